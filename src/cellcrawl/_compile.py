@@ -1,0 +1,33 @@
+"""The one place that says how numerical kernels are compiled."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeVar
+
+import numba
+
+F = TypeVar("F", bound=Callable[..., object])
+
+
+def kernel(function: F) -> F:
+    """Compile a numerical kernel: cached on disk, divisions vectorise, fused multiply-adds allowed.
+
+    NaN and infinity keep their meaning, so a kernel may test for them.
+    """
+    compiled: F = numba.njit(cache=True, error_model="numpy", fastmath={"contract"})(function)
+    return compiled
+
+
+def inlined_kernel(function: F) -> F:
+    """Like `kernel`, for a few lines that are inlined wherever they are called."""
+    compiled: F = numba.njit(
+        cache=True, error_model="numpy", fastmath={"contract"}, forceinline=True
+    )(function)
+    return compiled
+
+
+def exact_kernel(function: F) -> F:
+    """Compile with strict IEEE arithmetic, for predicates whose sign must be right."""
+    compiled: F = numba.njit(cache=True, error_model="numpy")(function)
+    return compiled

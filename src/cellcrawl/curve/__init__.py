@@ -1,0 +1,15 @@
+"""The cell edge: a closed curve with equally spaced nodes."""
+
+from cellcrawl.curve.construct import from_path, from_polar, from_polygon, simple_polygon
+from cellcrawl.curve.crossing import Crossing, first_crossing
+from cellcrawl.curve.equal_arclength import Curve
+
+__all__ = [
+    "Crossing",
+    "Curve",
+    "first_crossing",
+    "from_path",
+    "from_polar",
+    "from_polygon",
+    "simple_polygon",
+]

@@ -1,0 +1,146 @@
+"""The cell edge as a closed curve with equally spaced nodes, held by tangent angle and length.
+
+Counter-clockwise; tangent ``(cos theta, sin theta)``, outward normal ``(sin theta, -cos theta)``,
+curvature ``kappa = d theta / ds`` (positive on a circle). Derivatives and integrals are spectral:
+exact to rounding on a smooth resolved curve.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from cellcrawl.curve import fourier
+from cellcrawl.errors import InputError
+from cellcrawl.validation import real_array, real_number, whole_number
+
+FEWEST_NODES = 16
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A closed curve with equally spaced nodes; immutable.
+
+    Parameters
+    ----------
+    theta : array, shape (nodes,)
+        Tangent angle at the nodes, continuous; it gains ``2 pi`` once round the curve.
+    length : float
+        Total length, above 0.
+    origin : array, shape (2,), optional
+        Position of node 0; (0, 0) unless given.
+
+    Raises
+    ------
+    InputError
+        For wrong shapes, values that are not finite, or a length that is not positive.
+    """
+
+    theta: np.ndarray
+    length: float
+    origin: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(2))
+
+    def __post_init__(self) -> None:
+        theta = real_array("Curve theta", self.theta, (None,))
+        whole_number("Curve nodes", theta.size, FEWEST_NODES)
+        origin = real_array("Curve origin", self.origin, (2,))
+        length = real_number("Curve length", self.length, 0.0, math.inf, open_low=True)
+        for array in (theta, origin):
+            array.setflags(write=False)
+        object.__setattr__(self, "theta", theta)
+        object.__setattr__(self, "origin", origin)
+        object.__setattr__(self, "length", length)
+
+    @property
+    def nodes(self) -> int:
+        """Number of nodes."""
+        return self.theta.size
+
+    @property
+    def spacing(self) -> float:
+        """Arclength between neighbouring nodes."""
+        return self.length / self.nodes
+
+    @cached_property
+    def arclength(self) -> np.ndarray:
+        """Arclength of each node from node 0, shape (nodes,)."""
+        return self.spacing * np.arange(self.nodes)
+
+    @cached_property
+    def curvature(self) -> np.ndarray:
+        """``kappa = d theta / ds`` at the nodes, shape (nodes,)."""
+        winding = 2.0 * math.pi * np.arange(self.nodes) / self.nodes
+        slope = fourier.derivative(self.theta - winding, 2.0 * math.pi)
+        return (1.0 + slope) * (2.0 * math.pi / self.length)
+
+    @cached_property
+    def points(self) -> np.ndarray:
+        """Positions of the nodes, shape (nodes, 2); a closure error is spread evenly."""
+        tangent = np.exp(1j * self.theta)
+        path = fourier.integral(tangent - tangent.mean(), self.length)
+        return np.column_stack([path.real, path.imag]) + self.origin
+
+    @cached_property
+    def normals(self) -> np.ndarray:
+        """Outward unit normals at the nodes, shape (nodes, 2)."""
+        return np.column_stack([np.sin(self.theta), -np.cos(self.theta)])
+
+    @cached_property
+    def area(self) -> float:
+        """Enclosed area, positive for a counter-clockwise curve."""
+        arms = self.points - self.origin
+        return float(0.5 * self.spacing * np.sum(arms * self.normals))
+
+    @cached_property
+    def centroid(self) -> np.ndarray:
+        """Centroid of the enclosed area, shape (2,)."""
+        arms = self.points - self.origin
+        moments: np.ndarray = self.spacing * np.sum(arms**2 * self.normals, axis=0)
+        return moments / (2.0 * self.area) + self.origin
+
+    @property
+    def circularity(self) -> float:
+        """``4 pi A / L**2``: 1 for a circle, less for anything else."""
+        return 4.0 * math.pi * self.area / self.length**2
+
+    @property
+    def closure_error(self) -> float:
+        """Distance between the two ends, over the length."""
+        return float(abs(np.exp(1j * self.theta).mean()))
+
+    @property
+    def turning_number(self) -> int:
+        """Turns of the tangent once round: 1 for a simple counter-clockwise curve."""
+        steps = np.diff(np.append(self.theta, self.theta[0] + 2.0 * math.pi))
+        return round(float(np.sum(np.angle(np.exp(1j * steps)))) / (2.0 * math.pi))
+
+    def closed(self) -> Curve:
+        """Return the curve projected to close: the least change of theta (in the mean square)."""
+        theta = self.theta.copy()
+        for _ in range(20):
+            cosine, sine = np.cos(theta), np.sin(theta)
+            gap = np.array([cosine.mean(), sine.mean()])
+            if np.hypot(*gap) < 1e-16:
+                break
+            cross = np.mean(sine * cosine)
+            slope = np.array([[-np.mean(sine * sine), -cross], [cross, np.mean(cosine * cosine)]])
+            a, b = np.linalg.solve(slope, -gap)
+            theta += a * sine + b * cosine
+        return dataclasses.replace(self, theta=theta)
+
+    def moved(self, shift: Any) -> Curve:
+        """Return the curve translated by ``shift``, shape (2,)."""
+        return dataclasses.replace(self, origin=self.origin + real_array("shift", shift, (2,)))
+
+    def resampled(self, nodes: int) -> Curve:
+        """Return the same curve on another number of equally spaced nodes, node 0 in place."""
+        whole_number("Curve nodes", nodes, FEWEST_NODES)
+        winding = 2.0 * math.pi * np.arange(self.nodes) / self.nodes
+        wobble = fourier.resample(self.theta - winding, nodes)
+        theta = wobble + 2.0 * math.pi * np.arange(nodes) / nodes
+        return Curve(theta, self.length, self.origin).closed()

@@ -1,0 +1,58 @@
+"""What a solver asks of the parameters: their values along the edge, now.
+
+Solvers never see a constant: they get one row of values per local parameter, one value per node.
+Parameters that vary along the edge or over the substrate need a class with these methods and no
+change in any solver.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from cellcrawl.parameters.dimensionless import Parameters
+from cellcrawl.parameters.schedule import CONSTANT, Schedule
+
+EDGE_ROWS: Final = ("r_on", "zeta_1", "D", "epsilon", "h", "sigma_c", "v_p")
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """Parameters of one run with their schedule; immutable."""
+
+    parameters: Parameters
+    schedule: Schedule = CONSTANT
+
+    def at(self, time: float) -> Parameters:
+        """Return the parameters that hold from ``time`` on."""
+        return self.schedule.at(self.parameters, time)
+
+    def edge(self, time: float, nodes: int, *, before: bool = False) -> np.ndarray:
+        """Return the local parameters at every node, shape (len(EDGE_ROWS), nodes).
+
+        With ``before``, a jump at ``time`` has not happened yet.
+        """
+        now = (self.schedule.before if before else self.schedule.at)(self.parameters, time)
+        column = np.array([[getattr(now, name)] for name in EDGE_ROWS])
+        return np.repeat(column, nodes, axis=1)
+
+    def tension_rate(self, time: float) -> float:
+        """Return ``G`` of the tension law from ``time`` on."""
+        return self.at(time).tension_rate
+
+    def next_break(self, time: float) -> float:
+        """Return the next time at which a parameter jumps or a ramp begins or ends."""
+        return self.schedule.next_break(time)
+
+    def varies(self, start: float, end: float) -> bool:
+        """Whether a parameter ramps between ``start`` and ``end``."""
+        return self.schedule.varies(start, end)
+
+    def extremes(self) -> list[Parameters]:
+        """Return the parameters at the start and at both sides of every break."""
+        found = [self.parameters if not self.schedule.breaks else self.at(-np.inf)]
+        for time in self.schedule.breaks:
+            found += [self.schedule.before(self.parameters, time), self.at(time)]
+        return found

@@ -1,0 +1,124 @@
+"""Parameters that change during a run, by jump or ramp."""
+
+from __future__ import annotations
+
+import bisect
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from cellcrawl.errors import InputError
+from cellcrawl.parameters.dimensionless import DESCRIPTIONS, Parameters
+from cellcrawl.validation import known_names, real_number, table
+
+
+class Schedule:
+    """Values of some parameters at given times; immutable.
+
+    Between two times a value changes linearly; before the first and after the last it is held. A
+    repeated time is a jump: the first value holds up to it, the second from it on.
+
+    Parameters
+    ----------
+    changes : mapping of str to sequence of (time, value)
+        For each parameter, its values at times in order. Times are dimensionless.
+
+    Raises
+    ------
+    InputError
+        For an unknown parameter, times out of order, or a value out of the parameter's range.
+
+    Examples
+    --------
+    >>> ramp = Schedule({"r_on": [(25.0, 16.0), (35.0, 30.0)]})
+    >>> ramp.at(Parameters(), 30.0).r_on
+    23.0
+    >>> jump = Schedule({"r_on": [(25.0, 16.0), (25.0, 30.0)]})
+    >>> jump.at(Parameters(), 25.0).r_on, jump.before(Parameters(), 25.0).r_on
+    (30.0, 16.0)
+    """
+
+    def __init__(self, changes: Mapping[str, Sequence[tuple[float, float]]]) -> None:
+        known_names("Schedule", table("Schedule", changes), DESCRIPTIONS)
+        self._points = {name: _checked(name, points) for name, points in changes.items()}
+
+    def at(self, parameters: Parameters, time: float) -> Parameters:
+        """Return ``parameters`` with the scheduled values that hold from ``time`` on."""
+        return self._evaluate(parameters, time, bisect.bisect_right)
+
+    def before(self, parameters: Parameters, time: float) -> Parameters:
+        """Return ``parameters`` with the scheduled values that hold up to ``time``."""
+        return self._evaluate(parameters, time, bisect.bisect_left)
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Times at which a value jumps or a ramp begins or ends, in order."""
+        return tuple(sorted({time for points in self._points.values() for time, _ in points}))
+
+    def next_break(self, time: float) -> float:
+        """Return the first break after ``time``, infinity if there is none."""
+        later = bisect.bisect_right(self.breaks, time)
+        return self.breaks[later] if later < len(self.breaks) else float("inf")
+
+    def varies(self, start: float, end: float) -> bool:
+        """Whether any value ramps between the breaks around ``start`` and ``end``."""
+        return any(
+            first[0] < end and second[0] > start and first[1] != second[1]
+            for points in self._points.values()
+            for first, second in zip(points, points[1:], strict=False)
+            if first[0] < second[0]
+        )
+
+    def to_dict(self) -> dict[str, list[list[float]]]:
+        """Return the schedule as plain lists, for JSON and TOML."""
+        return {name: [list(point) for point in points] for name, points in self._points.items()}
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Schedule) and self._points == other._points
+
+    def __hash__(self) -> int:
+        return hash(tuple(sorted(self._points.items())))
+
+    def __repr__(self) -> str:
+        return f"Schedule({self.to_dict()!r})"
+
+    def _evaluate(self, parameters: Parameters, time: float, side: Any) -> Parameters:
+        if not self._points:
+            return parameters
+        values = {name: _value(points, time, side) for name, points in self._points.items()}
+        return parameters.replace(**values)
+
+
+def _checked(name: str, points: Any) -> tuple[tuple[float, float], ...]:
+    try:
+        pairs = [(time, value) for time, value in points]
+    except (TypeError, ValueError):
+        raise InputError(f"Schedule {name} must be a list of (time, value) pairs") from None
+    if not pairs:
+        raise InputError(f"Schedule {name} is empty: give at least one (time, value) pair")
+    limits = DESCRIPTIONS[name]
+    checked = tuple(
+        (
+            real_number(f"Schedule {name} time", time, -1e12, 1e12),
+            real_number(f"Schedule {name} at t = {time}", value, limits.low, limits.high),
+        )
+        for time, value in pairs
+    )
+    times = [time for time, _ in checked]
+    if times != sorted(times):
+        raise InputError(f"Schedule {name} has times out of order: {times}")
+    if any(times.count(time) > 2 for time in times):
+        raise InputError(f"Schedule {name} has a time three times: two make a jump")
+    return checked
+
+
+def _value(points: tuple[tuple[float, float], ...], time: float, side: Any) -> float:
+    following = side([point[0] for point in points], time)
+    if following == 0:
+        return points[0][1]
+    if following == len(points):
+        return points[-1][1]
+    (t0, v0), (t1, v1) = points[following - 1], points[following]
+    return v0 + (v1 - v0) * ((time - t0) / (t1 - t0))
+
+
+CONSTANT = Schedule({})

@@ -1,0 +1,1 @@
+"""The model's pointwise laws, once, for every solver."""

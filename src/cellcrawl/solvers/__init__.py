@@ -1,0 +1,10 @@
+"""The numerical schemes, by name."""
+
+from __future__ import annotations
+
+from cellcrawl.solvers.base import Breakdown, Frame, Solver
+from cellcrawl.solvers.paper import PaperSolver
+
+SOLVERS: dict[str, type[Solver]] = {PaperSolver.name: PaperSolver}
+
+__all__ = ["SOLVERS", "Breakdown", "Frame", "Solver"]

@@ -1,0 +1,124 @@
+"""What a solver is: something that holds a cell's state and moves it on in time.
+
+A solver knows nothing of files, plots or progress bars. The simulation asks it to `advance` to a
+time, takes a `Frame` of any time in its last step, and can save and restore it by `checkpoint`.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from cellcrawl.parameters import EDGE_ROWS, Conditions
+from cellcrawl.physics import laws
+from cellcrawl.starts.base import CellState
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """The cell at one instant, on nodes equally spaced in arclength.
+
+    Arrays have shape (nodes,). ``normal_velocity`` and ``friction`` follow from the rest.
+    """
+
+    time: float
+    x: np.ndarray
+    y: np.ndarray
+    theta: np.ndarray
+    curvature: np.ndarray
+    bound_fraction: np.ndarray
+    off_rate: np.ndarray
+    normal_velocity: np.ndarray
+    friction: np.ndarray
+    tension: float
+    length: float
+    area: float
+    centroid_x: float
+    centroid_y: float
+
+    @property
+    def points(self) -> np.ndarray:
+        """Positions of the nodes, shape (nodes, 2)."""
+        return np.column_stack([self.x, self.y])
+
+
+@dataclass(frozen=True)
+class Breakdown:
+    """Why a solver could not go on: a status, when, and where on the edge."""
+
+    status: str
+    time: float
+    message: str
+
+
+class Solver(ABC):
+    """A numerical scheme at work on one cell.
+
+    Parameters
+    ----------
+    start : CellState or None
+        The first state; None when `restore` follows.
+    conditions : Conditions
+        The parameters and how they change.
+    time : float
+        Time of the first state.
+    **options
+        The scheme's own numbers, named in `OPTIONS`.
+    """
+
+    name: ClassVar[str]
+    OPTIONS: ClassVar[dict[str, str]]
+    """Names of the scheme's options with a line on each, for help and error messages."""
+
+    time: float
+    """Time of the solver's current state: the end of its last step."""
+
+    @abstractmethod
+    def advance(self, target: float) -> Breakdown | None:
+        """Step on until ``time >= target``, without shortening a step to hit it.
+
+        Where the steps fall never depends on ``target``, so that a run may be stopped and resumed
+        anywhere to the same bits. On a breakdown the state is the last valid one.
+        """
+
+    @abstractmethod
+    def frame(self, time: float) -> Frame:
+        """Return the cell at ``time``, which must lie within the last step."""
+
+    @abstractmethod
+    def checkpoint(self) -> dict[str, np.ndarray]:
+        """Return arrays from which `restore` goes on to the same bits."""
+
+    @abstractmethod
+    def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
+        """Take up the state a `checkpoint` holds."""
+
+    @abstractmethod
+    def options(self) -> dict[str, Any]:
+        """Return the options in force, complete, as plain values."""
+
+    @abstractmethod
+    def diagnostics(self) -> dict[str, float]:
+        """Return what the solver did so far: steps, right-hand sides, largest closure error."""
+
+
+def pointwise_velocity_and_friction(
+    off_rate: np.ndarray, bound_fraction: np.ndarray, edge: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Normal velocity and friction of the edge from the model's laws.
+
+    Arrays have shape (nodes,), ``edge`` (len(EDGE_ROWS), nodes).
+    """
+    rows = dict(zip(EDGE_ROWS, edge, strict=True))
+    y = np.log(off_rate)
+    velocity = _law(laws.edge_velocity)(y, off_rate, rows["v_p"], rows["epsilon"])
+    friction = _law(laws.friction)(y, off_rate, bound_fraction, rows["zeta_1"])
+    return velocity, friction
+
+
+def _law(compiled: Any) -> Any:
+    """Return the Python function behind a compiled law; it works on whole arrays."""
+    return compiled.py_func

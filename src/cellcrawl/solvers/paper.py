@@ -1,0 +1,290 @@
+"""The paper's scheme: explicit Euler for shape and tension, Crank-Nicolson for the linkers."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar
+
+import numpy as np
+
+from cellcrawl.errors import InputError
+from cellcrawl.linear import fastest_decay
+from cellcrawl.parameters import Conditions
+from cellcrawl.physics.force_balance import SOLVED, solve_off_rate
+from cellcrawl.solvers import paper_step, tangent_angle
+from cellcrawl.solvers.base import (
+    Breakdown,
+    Frame,
+    Solver,
+    pointwise_velocity_and_friction,
+)
+from cellcrawl.starts.base import CellState
+from cellcrawl.validation import real_number, whole_number
+
+_ON_GRID = 1e-9  # a time this close to a step, in steps, is that step
+_STABLE = 2.0  # explicit Euler decays while step * rate < 2
+
+
+class PaperSolver(Solver):
+    """The scheme of Chen, Saintillan & Rangamani (2023), with the transport term ``T n_s``.
+
+    First order in time, second in space. ``elasticity="consistent"`` adds a tension mode that decays
+    so fast that the published step of 1e-3 is unstable; such a step is refused with one that works.
+    """
+
+    name: ClassVar[str] = "paper"
+    OPTIONS: ClassVar[dict[str, str]] = {
+        "nodes": "nodes on the edge, 16 to 100000 (default 2000)",
+        "dt": "time step (default 1e-3, or less where the tension needs it)",
+    }
+
+    def __init__(
+        self,
+        start: CellState | None,
+        conditions: Conditions,
+        time: float = 0.0,
+        *,
+        nodes: int = 2000,
+        dt: float | None = None,
+    ) -> None:
+        self._conditions = conditions
+        self._nodes = nodes
+        self._dt = _checked_step(dt, nodes, conditions)
+        self._anchor = time  # steps are counted from here: the start, or the last break
+        self._steps_from_anchor = 0
+        self._steps = 0
+        self.time = time
+        self._work = np.empty((paper_step.WORK_ROWS, nodes))
+        self._fields = np.zeros((3, nodes))  # theta, n, log r
+        self._scalars = np.zeros(6)
+        self._previous: tuple[float, np.ndarray, np.ndarray] | None = None
+        if start is not None:
+            self._begin(start)
+
+    @staticmethod
+    def checked_nodes(nodes: Any) -> int:
+        """Return the number of nodes, 2000 for None."""
+        return 2000 if nodes is None else whole_number("nodes", nodes, 16, 100_000)
+
+    def advance(self, target: float) -> Breakdown | None:
+        while self.time < target - _ON_GRID * self._dt:
+            now = self.time
+            end = self._conditions.next_break(now)
+            if self._step_time(self._steps_from_anchor + 1) >= end - _ON_GRID * self._dt:
+                breakdown = self._take(1, end - now)
+                landed: float | None = end
+            else:
+                steps = self._steps_towards(min(target, end))
+                if self._conditions.varies(now, end):
+                    steps = 1
+                breakdown = self._take(steps, self._dt)
+                landed = None
+            if breakdown is not None:
+                return breakdown
+            if landed is not None:
+                self._anchor, self._steps_from_anchor, self.time = landed, 0, landed
+        return None
+
+    def frame(self, time: float) -> Frame:
+        fields, scalars = self._fields, self._scalars
+        edge = self._conditions.edge(time, self._nodes)
+        if abs(time - self.time) > _ON_GRID * self._dt:
+            fields, scalars = self._between(time, edge)
+        theta, n, y = fields.copy()
+        length = float(scalars[paper_step.LENGTH])
+        kappa, cosine, sine = np.empty_like(theta), np.cos(theta), np.sin(theta)
+        x, z = np.empty_like(theta), np.empty_like(theta)
+        tangent_angle.curvature(theta, length, kappa)
+        tangent_angle.points(length, cosine, sine, kappa, x, z)
+        area = float(scalars[paper_step.AREA])
+        center = tangent_angle.centroid(length, area, cosine, sine, x, z)
+        origin_x = float(scalars[paper_step.ORIGIN_X])
+        origin_y = float(scalars[paper_step.ORIGIN_Y])
+        off_rate = np.exp(y)
+        velocity, friction = pointwise_velocity_and_friction(off_rate, n, edge)
+        return Frame(
+            time=time,
+            x=x + origin_x,
+            y=z + origin_y,
+            theta=theta,
+            curvature=kappa,
+            bound_fraction=n,
+            off_rate=off_rate,
+            normal_velocity=velocity,
+            friction=friction,
+            tension=float(scalars[paper_step.TENSION]),
+            length=length,
+            area=area,
+            centroid_x=center[0] + origin_x,
+            centroid_y=center[1] + origin_y,
+        )
+
+    def checkpoint(self) -> dict[str, np.ndarray]:
+        saved = {
+            "clock": np.array([self.time, self._anchor]),
+            "counters": np.array([self._steps_from_anchor, self._steps]),
+            "fields": self._fields.copy(),
+            "scalars": self._scalars.copy(),
+        }
+        if self._previous is not None:
+            time, fields, scalars = self._previous
+            saved["previous_fields"] = fields
+            saved["previous_scalars"] = np.append(scalars, time)
+        return saved
+
+    def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
+        self.time, self._anchor = (float(value) for value in checkpoint["clock"])
+        self._steps_from_anchor, self._steps = (int(value) for value in checkpoint["counters"])
+        self._fields = np.array(checkpoint["fields"], dtype=float)
+        self._scalars = np.array(checkpoint["scalars"], dtype=float)
+        self._previous = None
+        if "previous_fields" in checkpoint:
+            scalars = np.array(checkpoint["previous_scalars"], dtype=float)
+            fields = np.array(checkpoint["previous_fields"], dtype=float)
+            self._previous = (float(scalars[-1]), fields, scalars[:-1])
+
+    def options(self) -> dict[str, Any]:
+        return {"nodes": self._nodes, "dt": self._dt}
+
+    def diagnostics(self) -> dict[str, float]:
+        return {
+            "steps": self._steps,
+            "rejected_steps": 0,
+            "right_hand_sides": self._steps,
+            "largest_closure_error": float(self._scalars[paper_step.CLOSURE]),
+        }
+
+    def _begin(self, start: CellState) -> None:
+        curve = start.curve.closed()
+        theta, n, y = self._fields
+        theta[:] = curve.theta
+        n[:] = start.bound_fraction
+        edge = self._conditions.edge(self.time, self._nodes)
+        kappa, x, z = np.empty((3, self._nodes))
+        tangent_angle.curvature(theta, curve.length, kappa)
+        cosine, sine = np.cos(theta), np.sin(theta)
+        gap = tangent_angle.points(curve.length, cosine, sine, kappa, x, z)
+        area = tangent_angle.enclosed_area(curve.length, cosine, sine, x, z)
+        self._scalars[:] = (curve.length, start.tension, *curve.origin, area, gap)
+        y[:] = math.log(self._conditions.at(self.time).r_p)
+        failed = solve_off_rate(y, n, start.tension, kappa, edge[1], edge[5], edge[4])
+        if failed != SOLVED:
+            raise InputError(
+                f"the start has no off-rate r >= 1 that balances the forces at node {failed} "
+                f"(curvature {kappa[failed]:.4g}, tension {start.tension:.4g}): "
+                "use a smoother or less tense start"
+            )
+
+    def _take(self, steps: int, dt: float) -> Breakdown | None:
+        """Take ``steps`` steps of ``dt``, keeping the state before the last."""
+        edge = self._conditions.edge(self.time, self._nodes)
+        rate = self._conditions.tension_rate(self.time)
+        theta, n, y = self._fields
+        for part in (steps - 1, 1):
+            if part == 0:
+                continue
+            if part == 1:
+                self._previous = (self.time, self._fields.copy(), self._scalars.copy())
+            code, node, taken = paper_step.advance(
+                part, dt, rate, edge, theta, n, y, self._scalars, self._work
+            )
+            self._steps += taken
+            self._steps_from_anchor += taken
+            self.time = self._step_time(self._steps_from_anchor)
+            if code != paper_step.STEPPED:
+                self._previous = None
+                return self._breakdown(code, node, dt, edge)
+        return None
+
+    def _breakdown(self, code: int, node: int, dt: float, edge: np.ndarray) -> Breakdown:
+        time = self.time + dt
+        place = f"at t = {time:.6g}, s/L = {node / self._nodes:.4f}"
+        stability = dt * _fastest_rate(self._scalars, self._fields, edge)
+        advice = ""
+        if stability > _STABLE:
+            advice = (
+                f"; the step {dt:g} is too long for this state, dt = {1.5 * dt / stability:.1g} "
+                "or below may go further"
+            )
+        if code == paper_step.NO_ROOT:
+            return Breakdown(
+                "out_of_range",
+                time,
+                f"no off-rate r >= 1 balances the forces {place}: the edge is too concave for its "
+                f"tension, which the model does not cover{advice}",
+            )
+        return Breakdown("not_finite", time, f"the state is no longer finite {place}{advice}")
+
+    def _step_time(self, count: int) -> float:
+        return self._anchor + count * self._dt
+
+    def _steps_towards(self, target: float) -> int:
+        """Steps from now to the first step at or after ``target``, staying before the next break."""
+        needed = math.ceil((target - self._anchor) / self._dt - _ON_GRID) - self._steps_from_anchor
+        end = self._conditions.next_break(self.time)
+        if math.isfinite(end):
+            room = math.ceil((end - self._anchor) / self._dt - _ON_GRID) - 1
+            needed = min(needed, room - self._steps_from_anchor)
+        return max(needed, 1)
+
+    def _between(self, time: float, edge: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """State inside the last step, linear in time, with the off-rate of that state."""
+        if self._previous is None or not self._previous[0] <= time <= self.time:
+            raise ValueError(f"t = {time} is not within the last step, which ends at {self.time}")
+        start, fields, scalars = self._previous
+        part = (time - start) / (self.time - start)
+        fields = fields + part * (self._fields - fields)
+        scalars = scalars + part * (self._scalars - scalars)
+        theta, n, y = fields
+        kappa = np.empty_like(theta)
+        tangent_angle.curvature(theta, scalars[paper_step.LENGTH], kappa)
+        solve_off_rate(y, n, scalars[paper_step.TENSION], kappa, edge[1], edge[5], edge[4])
+        return fields, scalars
+
+
+def _checked_step(dt: Any, nodes: int, conditions: Conditions) -> float:
+    """Return the step, or refuse one the linear theory of the resting circle says is unstable."""
+    tension, shape = (
+        max(rate(p) for p in conditions.extremes())
+        for rate in (fastest_decay, lambda p: _shape_rate(p, nodes))
+    )
+    longest = _STABLE / max(tension, shape, 1e-12)
+    safe = _one_digit_below(0.6 * longest)
+    if dt is None:
+        return min(1e-3, safe)
+    step = real_number("dt", dt, 0.0, 1.0, open_low=True)
+    if step > longest:
+        why = (
+            f"the tension decays at a rate of {tension:.0f}"
+            if tension >= shape
+            else f"the shape on {nodes} nodes decays at a rate of up to {shape:.0f}"
+        )
+        raise InputError(
+            f"dt = {step:g} is unstable: {why}, and an explicit step must stay below "
+            f"2 / rate = {longest:.2g}; dt = {safe:g} works"
+        )
+    return step
+
+
+def _shape_rate(parameters: Any, nodes: int) -> float:
+    """Decay rate of the finest shape the scheme's wide differences see, on the resting circle."""
+    p = parameters
+    log_r = math.log(p.r_p)
+    resistance = (1.0 + log_r) / (1.0 + log_r + p.zeta_1 * p.n_bar / p.r_p)
+    finest = nodes / (2.0 * math.pi)
+    return float(p.epsilon * p.h * abs(p.sigma_bar) * finest**2 * resistance)
+
+
+def _fastest_rate(scalars: np.ndarray, fields: np.ndarray, edge: np.ndarray) -> float:
+    """Decay rate of the finest shape in the present state."""
+    _, n, y = fields
+    r = np.exp(y)
+    resistance = (1.0 + y) * r / ((1.0 + y) * r + edge[1] * n)
+    finest = n.size / scalars[paper_step.LENGTH]
+    tension = abs(scalars[paper_step.TENSION])
+    return float(np.max(edge[3] * edge[4] * resistance) * tension * finest**2)
+
+
+def _one_digit_below(value: float) -> float:
+    power = 10.0 ** math.floor(math.log10(value))
+    return math.floor(value / power) * power
