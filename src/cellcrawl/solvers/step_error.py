@@ -1,0 +1,35 @@
+"""The size of an error in a state, relative to what a cell is made of."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from cellcrawl._compile import kernel
+from cellcrawl.solvers.adaptive_rates import AREA, LENGTH, ORIGIN_X, ORIGIN_Y, TENSION
+from cellcrawl.solvers.staggered import HALO
+
+_TENSION_SCALE = 100.0
+
+
+@kernel
+def relative_size(error: np.ndarray, state: np.ndarray, nodes: int) -> float:
+    """Root of the summed squares: angle and bound fraction in the mean, scalars relative.
+
+    The position counts against a radius of 1. Infinity when it is not a number.
+    """
+    span = nodes + 2 * HALO
+    s0 = s1 = s2 = s3 = 0.0
+    for i in range(HALO, HALO + nodes, 4):
+        s0 += error[i] ** 2 + error[span + i] ** 2
+        s1 += error[i + 1] ** 2 + error[span + i + 1] ** 2
+        s2 += error[i + 2] ** 2 + error[span + i + 2] ** 2
+        s3 += error[i + 3] ** 2 + error[span + i + 3] ** 2
+    square = ((s0 + s1) + (s2 + s3)) / nodes
+    e, u = error[2 * span :], state[2 * span :]
+    square += (e[LENGTH] / u[LENGTH]) ** 2 + (e[AREA] / u[AREA]) ** 2
+    square += (e[TENSION] / (abs(u[TENSION]) + _TENSION_SCALE)) ** 2
+    square += e[ORIGIN_X] ** 2 + e[ORIGIN_Y] ** 2
+    size = math.sqrt(square)
+    return size if size == size else np.inf
