@@ -11,26 +11,27 @@ from typing import Final
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.solvers import rkc
-from cellcrawl.solvers.adaptive_rates import spectral_radius
+from cellcrawl.solvers import chebyshev, stabilised
+from cellcrawl.solvers.adaptive_rates import stiffness
+from cellcrawl.solvers.resolution import COARSEN, COARSER_MISSES, missed
 
 # rows of `states`; the last step went from PREVIOUS to CURRENT
 PREVIOUS, PREVIOUS_RATES, CURRENT, CURRENT_RATES, TRIAL, TRIAL_RATES = range(6)
-STATE_ROWS: Final = 10
 # entries of `control`
-TIME, PREVIOUS_TIME, STEP, LAST_ERROR, RADIUS, LOCAL_ERRORS, SMALLEST_FAILED = range(7)
+TIME, PREVIOUS_TIME, STEP, LAST_ERROR, RADIUS, TENSION_DECAY, LOCAL_ERRORS = range(7)
 CONTROLS: Final = 8
 # entries of `counters`
-STEPS, REJECTED, RATES, FAILED_IN_A_ROW, CHECKED, WANTED = range(6)
+STEPS, REJECTED, RATES, FAILED_IN_A_ROW, CHECK_DUE = range(5)
 COUNTERS: Final = 8
 # what `run` returns
 REACHED, PAUSED, AT_BREAK, RETRY, CHECK_NODES, NO_ROOT, STEP_TOO_SMALL = range(7)
 
 LONGEST_STEP: Final = 0.1  # an instability grows at rates up to 13; longer steps would hide it
 SHORTEST_STEP: Final = 1e-9
-_SAFETY = 0.8
+_AIM = 0.4  # error asked of a step, in tolerances
 _RADIUS_MARGIN = 1.05
 _SHRINK_ON_FAILURE = 0.25
+_COARSEN_EVERY = 10
 
 
 @kernel
@@ -50,32 +51,39 @@ def run(
     target: float,
     end: float,
     tolerance: float,
+    order: int,
     most_steps: int,
-    check_every: int,
+    allowed: float,
+    nodes_range: tuple[int, int],
     control: np.ndarray,
     counters: np.ndarray,
     states: np.ndarray,
     y: np.ndarray,
     edges: np.ndarray,
-    tension_rates: np.ndarray,
     limits: np.ndarray,
     degrees: np.ndarray,
     first: np.ndarray,
-    rows: np.ndarray,
+    recurrence: np.ndarray,
+    finish: np.ndarray,
+    mixed: np.ndarray,
     work: np.ndarray,
 ) -> int:
     """Step until ``target`` is reached or something is for the caller to do.
 
-    ``edges`` has shape (times, 7, nodes) and ``tension_rates`` (times,): one time when the
-    parameters hold still, else their values at 0, 1/3, 2/3 and 1 of the next step, and then only
-    one step is tried (`RETRY`).
+    ``allowed`` is what the grid may miss (see `resolution`) while the nodes stay in their range.
+    ``edges`` has shape (times, 8, nodes), the parameters and G at the midpoints: one time when they
+    hold still, else at 0, 1/3, 2/3 and 1 of the next step, and then only one step is tried
+    (`RETRY`).
     """
-    ramping = tension_rates.size > 1
+    ramping = edges.shape[0] > 1
+    # a second-order step's estimate is of third order: take the power that goes as its square
+    power = 2.0 / 3.0 if order == chebyshev.ORDER else 1.0
+    weight = 1.0 if order == chebyshev.ORDER else 20.0
     tried = 0
     while control[TIME] < target:
         if tried == most_steps:
             return PAUSED
-        if counters[STEPS] >= counters[CHECKED] + check_every:
+        if counters[CHECK_DUE] == 1:
             return CHECK_NODES
         tried += 1
         h = bounded_step(control[STEP], control[TIME], end, control[RADIUS], limits)
@@ -85,8 +93,16 @@ def run(
             k += 1
         degree = degrees[k]
         counters[RATES] += degree
-        solved, error = rkc.step(h, degree, rows[first[k] :], states, y, edges, tension_rates, work)
-        error /= tolerance
+        relief = weight / (1.0 + h * control[TENSION_DECAY])
+        if order == chebyshev.ORDER:
+            solved, error = chebyshev.step(
+                h, degree, recurrence[first[k] :], relief, states, y, edges, mixed, work
+            )
+        else:
+            solved, error = stabilised.step(
+                h, degree, recurrence[first[k] :], finish[k], relief, states, y, edges, mixed, work
+            )
+        error = (error / tolerance) ** power
         if not solved or not error <= 1.0:
             counters[REJECTED] += 1
             counters[FAILED_IN_A_ROW] += 1
@@ -94,14 +110,14 @@ def run(
                 return STEP_TOO_SMALL if solved else NO_ROOT
             shrink = _SHRINK_ON_FAILURE
             if solved and error < 1e10:
-                shrink = max(0.1, _SAFETY * error ** (-1.0 / rkc.ERROR_ORDER))
+                shrink = max(0.1, (error / _AIM) ** (-1.0 / order))
             control[STEP] = max(h * shrink, SHORTEST_STEP)
             if ramping:
                 return RETRY
             continue
         error = max(error, 1e-6)
-        growth = _SAFETY * (
-            error ** (-0.7 / rkc.ERROR_ORDER) * control[LAST_ERROR] ** (0.4 / rkc.ERROR_ORDER)
+        growth = (error / _AIM) ** (-0.7 / order) * (control[LAST_ERROR] / _AIM) ** (
+            0.4 / order
         )
         most = 1.0 if counters[FAILED_IN_A_ROW] > 0 else 3.0
         control[STEP] = h * min(max(growth, 0.3), most)
@@ -113,7 +129,12 @@ def run(
         counters[FAILED_IN_A_ROW] = 0
         states[PREVIOUS:CURRENT] = states[CURRENT:TRIAL]
         states[CURRENT:TRIAL] = states[TRIAL : TRIAL + 2]
-        control[RADIUS] = spectral_radius(states[CURRENT], y, edges[-1], tension_rates[-1])
+        control[RADIUS], control[TENSION_DECAY] = stiffness(states[CURRENT], y, edges[-1])
+        misses = missed(states[CURRENT], y.size, work)
+        if misses > allowed and y.size < nodes_range[1]:
+            counters[CHECK_DUE] = 1
+        elif counters[STEPS] % _COARSEN_EVERY == 0 and y.size > nodes_range[0]:
+            counters[CHECK_DUE] = 1 if COARSER_MISSES * misses < COARSEN * allowed else 0
         if lands:
             return AT_BREAK
         if ramping:

@@ -40,6 +40,7 @@ from cellcrawl.solvers.staggered import (
 
 LENGTH, TENSION, AREA, ORIGIN_X, ORIGIN_Y = range(5)  # scalars, after the two fields
 SCALARS: Final = 8  # room kept for them
+TENSION_RATE: Final = 7  # row of `edge` after the local parameters
 WORK_ROWS: Final = 6
 _HALO = np.uint64(HALO)
 _NEAR = 0.12  # a first step in log r this short is followed by a second that reaches rounding
@@ -127,13 +128,12 @@ def rates(
     out: np.ndarray,
     y: np.ndarray,
     edge: np.ndarray,
-    tension_rate: float,
     work: np.ndarray,
 ) -> bool:
     """Write the rates of change of ``state`` to ``out``; False where there is no off-rate.
 
     Fills the halos of ``state``. ``y`` is the last ``log r`` and becomes the new one; ``edge`` holds
-    the parameters at the midpoints, shape (7, nodes).
+    the parameters at the midpoints and in its last row G, shape (8, nodes).
     """
     nodes = y.size
     span = nodes + 2 * HALO
@@ -169,7 +169,7 @@ def rates(
     area_t = spacing * total(speed, nodes)
     first_speed = mean_behind(speed, _HALO)
     scalars_t[LENGTH] = length * mean_stretch
-    scalars_t[TENSION] = tension_rate * area_t
+    scalars_t[TENSION] = edge[TENSION_RATE, 0] * area_t
     scalars_t[AREA] = area_t
     scalars_t[ORIGIN_X] = first_speed * math.sin(w[HALO])
     scalars_t[ORIGIN_Y] = -first_speed * math.cos(w[HALO])
@@ -177,12 +177,10 @@ def rates(
 
 
 @kernel
-def spectral_radius(
-    state: np.ndarray, y: np.ndarray, edge: np.ndarray, tension_rate: float
-) -> float:
-    """Bound on the fastest decay: diffusion and shape, or the tension, each with the reaction.
+def stiffness(state: np.ndarray, y: np.ndarray, edge: np.ndarray) -> tuple[float, float]:
+    """Bound on the fastest decay, and the decay of the tension by itself.
 
-    ``y`` must belong to ``state``.
+    Diffusion and shape, or the tension, each with the reaction. ``y`` must belong to ``state``.
     """
     nodes = y.size
     span = nodes + 2 * HALO
@@ -199,5 +197,5 @@ def spectral_radius(
         shape = max(shape, edge[3, i] * edge[4, i] * share)
         yielding += edge[3, i] * share
     grid = diffusion * SECOND_DIFFERENCE_PEAK + shape * sigma * DIFFERENCE_PEAK**2
-    tension = tension_rate * yielding / per_spacing
-    return max(grid * per_spacing**2, tension) + reaction
+    tension = edge[TENSION_RATE, 0] * yielding / per_spacing
+    return max(grid * per_spacing**2, tension) + reaction, tension

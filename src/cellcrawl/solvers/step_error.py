@@ -14,10 +14,10 @@ _TENSION_SCALE = 100.0
 
 
 @kernel
-def relative_size(error: np.ndarray, state: np.ndarray, nodes: int) -> float:
+def relative_size(error: np.ndarray, state: np.ndarray, nodes: int, relief: float) -> float:
     """Root of the summed squares: angle and bound fraction in the mean, scalars relative.
 
-    The position counts against a radius of 1. Infinity when it is not a number.
+    The position counts against a radius of 1, the tension's error is multiplied by ``relief``. Infinity when it is not a number.
     """
     span = nodes + 2 * HALO
     s0 = s1 = s2 = s3 = 0.0
@@ -29,7 +29,7 @@ def relative_size(error: np.ndarray, state: np.ndarray, nodes: int) -> float:
     square = ((s0 + s1) + (s2 + s3)) / nodes
     e, u = error[2 * span :], state[2 * span :]
     square += (e[LENGTH] / u[LENGTH]) ** 2 + (e[AREA] / u[AREA]) ** 2
-    square += (e[TENSION] / (abs(u[TENSION]) + _TENSION_SCALE)) ** 2
+    square += (relief * e[TENSION] / (abs(u[TENSION]) + _TENSION_SCALE)) ** 2
     square += e[ORIGIN_X] ** 2 + e[ORIGIN_Y] ** 2
     size = math.sqrt(square)
     return size if size == size else np.inf
