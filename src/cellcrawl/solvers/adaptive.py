@@ -214,6 +214,9 @@ class AdaptiveSolver(Solver):
         control = self._control
         control[drive.STEP] = 1.0 / control[drive.RADIUS]
         control[drive.LAST_ERROR] = 1.0
+        _, control[drive.CONTRAST] = resolution.missed(
+            self._states[drive.CURRENT], layout.nodes_of(self._states), self._work
+        )
         self._restarting = False
         return True
 
@@ -311,4 +314,4 @@ class AdaptiveSolver(Solver):
 
 
 def _grid_tolerance(rtol: float) -> float:
-    return (28.6 * rtol) ** 0.625
+    return 0.3 * (28.6 * rtol) ** 0.625

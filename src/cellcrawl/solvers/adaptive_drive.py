@@ -18,7 +18,7 @@ from cellcrawl.solvers.resolution import COARSEN, COARSER_MISSES, missed
 # rows of `states`; the last step went from PREVIOUS to CURRENT
 PREVIOUS, PREVIOUS_RATES, CURRENT, CURRENT_RATES, TRIAL, TRIAL_RATES = range(6)
 # entries of `control`
-TIME, PREVIOUS_TIME, STEP, LAST_ERROR, RADIUS, TENSION_DECAY, LOCAL_ERRORS = range(7)
+TIME, PREVIOUS_TIME, STEP, LAST_ERROR, RADIUS, TENSION_DECAY, LOCAL_ERRORS, CONTRAST = range(8)
 CONTROLS: Final = 8
 # entries of `counters`
 STEPS, REJECTED, RATES, FAILED_IN_A_ROW, CHECK_DUE = range(5)
@@ -32,6 +32,7 @@ _AIM = 0.4  # error asked of a step, in tolerances
 _RADIUS_MARGIN = 1.05
 _SHRINK_ON_FAILURE = 0.25
 _COARSEN_EVERY = 10
+_LEAST_CONTRAST = 0.01  # waves smaller than this are no longer followed to their own size
 
 
 @kernel
@@ -94,13 +95,14 @@ def run(
         degree = degrees[k]
         counters[RATES] += degree
         relief = weight / (1.0 + h * control[TENSION_DECAY])
+        contrast = min(max(control[CONTRAST], _LEAST_CONTRAST), 1.0)
         if order == chebyshev.ORDER:
             solved, error = chebyshev.step(
-                h, degree, recurrence[first[k] :], relief, states, y, edges, mixed, work
+                h, degree, recurrence[first[k] :], relief, contrast, states, y, edges, mixed, work
             )
         else:
             solved, error = stabilised.step(
-                h, degree, recurrence[first[k] :], finish[k], relief, states, y, edges, mixed, work
+                h, degree, recurrence[first[k] :], finish[k], relief, contrast, states, y, edges, mixed, work
             )
         error = (error / tolerance) ** power
         if not solved or not error <= 1.0:
@@ -130,7 +132,7 @@ def run(
         states[PREVIOUS:CURRENT] = states[CURRENT:TRIAL]
         states[CURRENT:TRIAL] = states[TRIAL : TRIAL + 2]
         control[RADIUS], control[TENSION_DECAY] = stiffness(states[CURRENT], y, edges[-1])
-        misses = missed(states[CURRENT], y.size, work)
+        misses, control[CONTRAST] = missed(states[CURRENT], y.size, work)
         if misses > allowed and y.size < nodes_range[1]:
             counters[CHECK_DUE] = 1
         elif counters[STEPS] % _COARSEN_EVERY == 0 and y.size > nodes_range[0]:

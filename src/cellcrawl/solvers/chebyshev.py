@@ -63,6 +63,7 @@ def step(
     degree: int,
     recurrence: np.ndarray,
     relief: float,
+    contrast: float,
     states: np.ndarray,
     y: np.ndarray,
     edges: np.ndarray,
@@ -71,7 +72,8 @@ def step(
 ) -> tuple[bool, float]:
     """Try a step from START to END, with the rates there; return whether it could, and the error.
 
-    ``relief`` lessens the error of a tension that decays within the step anyway.
+    ``relief`` lessens the error of a tension that decays within the step anyway;
+    ``contrast`` is the size of the waves on the edge.
     """
     start, f0, end, f = states[START], states[START_RATES], states[END], states[END_RATES]
     now, before = states[NOW], states[BEFORE]
@@ -94,4 +96,4 @@ def step(
         return False, np.inf
     for k in range(size):
         before[k] = 0.8 * (start[k] - end[k]) + 0.4 * h * (f0[k] + f[k])
-    return True, relative_size(before, end, y.size, relief)
+    return True, relative_size(before, end, y.size, relief, contrast)

@@ -34,8 +34,8 @@ _1 = np.uint64(1)
 
 
 @kernel
-def missed(state: np.ndarray, nodes: int, work: np.ndarray) -> float:
-    """Part of the slopes that the grid misses, of a state whose halos are filled.
+def missed(state: np.ndarray, nodes: int, work: np.ndarray) -> tuple[float, float]:
+    """Part of the slopes that the grid misses, and their size, of a state whose halos are filled.
 
     ``work`` has two rows with halos.
     """
@@ -56,10 +56,10 @@ def missed(state: np.ndarray, nodes: int, work: np.ndarray) -> float:
             now, then = then, now
         for i in range(HALO, HALO + nodes):
             square += now[i] * now[i]
-    flat = _FLAT * 2.0 * math.pi / nodes
-    return math.sqrt(square / nodes) / (
-        _SCALE ** (2 * _DOUBLE_DIFFERENCES) * (math.sqrt(slopes / nodes) + flat)
-    )
+    slope = nodes / (2.0 * math.pi)
+    size = slope * math.sqrt(slopes / nodes)
+    lost = slope * math.sqrt(square / nodes) / _SCALE ** (2 * _DOUBLE_DIFFERENCES)
+    return lost / (size + _FLAT), size
 
 
 def spectrum(angle: np.ndarray, bound: np.ndarray) -> np.ndarray:

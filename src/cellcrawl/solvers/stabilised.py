@@ -29,6 +29,7 @@ def step(
     recurrence: np.ndarray,
     finish: np.ndarray,
     relief: float,
+    contrast: float,
     states: np.ndarray,
     y: np.ndarray,
     edges: np.ndarray,
@@ -38,7 +39,8 @@ def step(
     """Try a step from START to END, with the rates there; return whether it could, and the error.
 
     ``recurrence`` has rows ``(mu, nu, kappa, c)``; ``finish`` the coefficients of the last stages.
-    ``relief`` lessens the error of a tension that decays within the step anyway.
+    ``relief`` lessens the error of a tension that decays within the step anyway;
+    ``contrast`` is the size of the waves on the edge.
     """
     start, end = states[START], states[END]
     now, before = states[NOW], states[BEFORE]
@@ -84,4 +86,4 @@ def step(
     e5 = h * finish[14]
     for k in range(size):
         stage[k] = e1 * f1[k] + e2 * f2[k] + e3 * f3[k] + e4 * f4[k] + e5 * f[k]
-    return True, relative_size(stage, end, y.size, relief)
+    return True, relative_size(stage, end, y.size, relief, contrast)

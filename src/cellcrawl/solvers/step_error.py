@@ -14,9 +14,13 @@ _TENSION_SCALE = 100.0
 
 
 @kernel
-def relative_size(error: np.ndarray, state: np.ndarray, nodes: int, relief: float) -> float:
+def relative_size(
+    error: np.ndarray, state: np.ndarray, nodes: int, relief: float, contrast: float
+) -> float:
     """Root of the summed squares: angle and bound fraction in the mean, scalars relative.
 
+    Angle and bound fraction count against ``contrast``, the size of the waves on the edge: while
+    small waves grow, so do their errors.
     The position counts against a radius of 1, the tension's error is multiplied by ``relief``. Infinity when it is not a number.
     """
     span = nodes + 2 * HALO
@@ -26,7 +30,7 @@ def relative_size(error: np.ndarray, state: np.ndarray, nodes: int, relief: floa
         s1 += error[i + 1] ** 2 + error[span + i + 1] ** 2
         s2 += error[i + 2] ** 2 + error[span + i + 2] ** 2
         s3 += error[i + 3] ** 2 + error[span + i + 3] ** 2
-    square = ((s0 + s1) + (s2 + s3)) / nodes
+    square = ((s0 + s1) + (s2 + s3)) / (nodes * contrast**2)
     e, u = error[2 * span :], state[2 * span :]
     square += (e[LENGTH] / u[LENGTH]) ** 2 + (e[AREA] / u[AREA]) ** 2
     square += (relief * e[TENSION] / (abs(u[TENSION]) + _TENSION_SCALE)) ** 2
