@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from cellcrawl.parameters import EDGE_ROWS
-from cellcrawl.physics.force_balance import SOLVED, solve_off_rate
+from cellcrawl.physics.force_balance import SOLVED, balance, solve_off_rate
 from cellcrawl.solvers import adaptive_state as layout
 from cellcrawl.solvers.adaptive_rates import LENGTH, ORIGIN_X, ORIGIN_Y, TENSION
 from cellcrawl.solvers.base import Frame, pointwise_velocity_and_friction
@@ -71,8 +71,15 @@ def frame(
     y = log_rate[(np.arange(nodes) * count) // nodes]
     row = {name: edge[index] for name, index in _ROWS.items()}
     failed = solve_off_rate(y, n, tension, kappa, row["zeta_1"], row["sigma_c"], row["h"])
-    if failed != SOLVED:
-        y[failed:] = math.nan
+    if failed != SOLVED:  # the edge left the model's range between the solver's midpoints
+        pull = tension * (1.0 + kappa * row["h"]) + row["sigma_c"]
+        rest = slice(failed, None)
+        y[rest] = [
+            max(balance(*values), 0.0)
+            for values in zip(
+                y[rest], n[rest], row["zeta_1"][rest], pull[rest].clip(0.0), strict=True
+            )
+        ]
     off_rate = np.exp(y)
     velocity, friction = pointwise_velocity_and_friction(off_rate, n, edge)
     made = Frame(

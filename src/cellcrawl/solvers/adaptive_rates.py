@@ -190,9 +190,10 @@ def stiffness(state: np.ndarray, y: np.ndarray, edge: np.ndarray) -> tuple[float
     reaction = diffusion = shape = yielding = 0.0
     for i in range(nodes):
         r = exponential(y[i])
-        # d(r log r) / dF: how much of a force becomes retrograde flow
-        share = r * (1.0 + y[i]) / friction_slope(y[i], r, n[HALO + i], edge[1, i])
-        reaction = max(reaction, edge[0, i] + r)
+        slope = friction_slope(y[i], r, n[HALO + i], edge[1, i])
+        share = r * (1.0 + y[i]) / slope  # d(r log r) / dF: how much of a force becomes flow
+        slip = n[HALO + i] * r * edge[1, i] * y[i] / slope  # fewer linkers, faster unbinding
+        reaction = max(reaction, abs(edge[0, i] + r - slip))
         diffusion = max(diffusion, edge[2, i])
         shape = max(shape, edge[3, i] * edge[4, i] * share)
         yielding += edge[3, i] * share

@@ -76,6 +76,11 @@ class Solver(ABC):
     time: float
     """Time of the solver's current state: the end of its last step."""
 
+    @classmethod
+    def start_nodes(cls, nodes: int) -> int:
+        """Return the number of nodes on which to sample a start, for an output on ``nodes``."""
+        return nodes
+
     @abstractmethod
     def advance(self, target: float) -> Breakdown | None:
         """Step on until ``time >= target``, without shortening a step to hit it.
