@@ -76,6 +76,16 @@ class Solver(ABC):
     time: float
     """Time of the solver's current state: the end of its last step."""
 
+    @classmethod
+    @abstractmethod
+    def checked_nodes(cls, nodes: Any) -> int:
+        """Return the number of nodes in a frame, the usual one for None, or raise `InputError`."""
+
+    @classmethod
+    @abstractmethod
+    def start_nodes(cls, nodes: int) -> int:
+        """Return on how many nodes the start should be given."""
+
     @abstractmethod
     def advance(self, target: float) -> Breakdown | None:
         """Step on until ``time >= target``, without shortening a step to hit it.
@@ -87,6 +97,10 @@ class Solver(ABC):
     @abstractmethod
     def frame(self, time: float) -> Frame:
         """Return the cell at ``time``, which must lie within the last step."""
+
+    def points(self, time: float) -> np.ndarray:
+        """Return the edge at ``time``, shape (nodes, 2), for the self-crossing check."""
+        return self.frame(time).points
 
     @abstractmethod
     def checkpoint(self) -> dict[str, np.ndarray]:

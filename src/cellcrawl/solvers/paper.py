@@ -61,10 +61,13 @@ class PaperSolver(Solver):
         if start is not None:
             self._begin(start)
 
-    @staticmethod
-    def checked_nodes(nodes: Any) -> int:
-        """Return the number of nodes, 2000 for None."""
+    @classmethod
+    def checked_nodes(cls, nodes: Any) -> int:
         return 2000 if nodes is None else whole_number("nodes", nodes, 16, 100_000)
+
+    @classmethod
+    def start_nodes(cls, nodes: int) -> int:
+        return nodes
 
     def advance(self, target: float) -> Breakdown | None:
         while self.time < target - _ON_GRID * self._dt:
