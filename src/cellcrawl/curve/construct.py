@@ -56,8 +56,10 @@ def from_path(path: np.ndarray, nodes: int) -> tuple[Curve, np.ndarray]:
     start = complex(path[0])
     curve = Curve(theta, 2.0 * math.pi * mean_speed, np.array([start.real, start.imag]))
     if curve.turning_number != 1:
-        raise InputError("the path is not a simple counter-clockwise curve: its tangent turns "
-                         f"{curve.turning_number} times, not once")
+        raise InputError(
+            "the path is not a simple counter-clockwise curve: its tangent turns "
+            f"{curve.turning_number} times, not once"
+        )
     return curve.closed(), parameter
 
 

@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 
 from cellcrawl.curve import fourier
-from cellcrawl.errors import InputError
 from cellcrawl.validation import real_array, real_number, whole_number
 
 FEWEST_NODES = 16
@@ -83,7 +82,8 @@ class Curve:
         """Positions of the nodes, shape (nodes, 2); a closure error is spread evenly."""
         tangent = np.exp(1j * self.theta)
         path = fourier.integral(tangent - tangent.mean(), self.length)
-        return np.column_stack([path.real, path.imag]) + self.origin
+        positions: np.ndarray = np.column_stack([path.real, path.imag]) + self.origin
+        return positions
 
     @cached_property
     def normals(self) -> np.ndarray:

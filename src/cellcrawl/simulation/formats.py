@@ -75,7 +75,10 @@ class Zarr:
     """A Zarr store, by the zarr package."""
 
     def open(self, path: Path) -> xr.Dataset:
-        return xr.open_zarr(path, consolidated=False, decode_times=False, chunks=None)
+        dataset: xr.Dataset = xr.open_zarr(
+            path, consolidated=False, decode_times=False, chunks=None
+        )
+        return dataset
 
     def write(
         self,
@@ -112,9 +115,7 @@ def by_suffix(path: Path) -> Format:
 def write_netcdf(path: Path, dataset: xr.Dataset, checkpoint: Mapping[str, np.ndarray]) -> None:
     """Write a small dataset and its checkpoint to one netCDF file."""
     dataset.to_netcdf(path, engine="h5netcdf")
-    _checkpoint_dataset(checkpoint).to_netcdf(
-        path, engine="h5netcdf", group=_CHECKPOINT, mode="a"
-    )
+    _checkpoint_dataset(checkpoint).to_netcdf(path, engine="h5netcdf", group=_CHECKPOINT, mode="a")
 
 
 def _create(file: h5netcdf.File, first: xr.Dataset, total: int) -> None:
