@@ -13,9 +13,12 @@ from cellcrawl.parameters import DESCRIPTIONS, ELASTICITIES, Parameters
 F = TypeVar("F", bound=Callable[..., Any])
 
 
-def parameter_options(function: F) -> F:
-    """Add one option for every field of `Parameters`."""
-    usual = Parameters()
+def parameter_options(usual: Parameters) -> Callable[[F], F]:
+    """Add one option for every field of `Parameters`; its help names the ``usual`` value."""
+    return lambda function: _with_options(function, usual)
+
+
+def _with_options(function: F, usual: Parameters) -> F:
     option = click.option(
         "--elasticity",
         metavar="LAW",
@@ -23,12 +26,14 @@ def parameter_options(function: F) -> F:
     )
     function = option(function)
     for name, described in reversed(DESCRIPTIONS.items()):
-        flag = "--" + name.lower().replace("_", "-")
+        flags = dict.fromkeys(
+            ["--" + name.replace("_", "-"), "--" + name.lower().replace("_", "-")]
+        )
         text = (
             f"{described.meaning[0].upper()}{described.meaning[1:]}, "
             f"{described.low:g} to {described.high:g}.  [default: {getattr(usual, name):g}]"
         )
-        function = click.option(flag, name, type=float, metavar="NUMBER", help=text)(function)
+        function = click.option(*flags, name, type=float, metavar="NUMBER", help=text)(function)
     return function
 
 

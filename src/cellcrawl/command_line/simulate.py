@@ -14,7 +14,7 @@ from cellcrawl.errors import InputError
 from cellcrawl.parameters import Parameters
 
 # The cell that `cellcrawl simulate` alone shows: the paper's zigzag.
-_SHOWN = {"r_on": 26.0, "zeta_1": 600.0}
+SHOWN = Parameters(r_on=26.0, zeta_1=600.0)
 
 
 @click.command(context_settings={"show_default": True})
@@ -44,7 +44,7 @@ _SHOWN = {"r_on": 26.0, "zeta_1": 600.0}
 @click.option("--overwrite", is_flag=True, help="Replace a run that is already there.")
 @click.option("--movie/--no-movie", default=True, help="Make a movie of the cell.")
 @click.option("--plot/--no-plot", "picture", default=True, help="Draw a summary picture.")
-@parameter_options
+@parameter_options(SHOWN)
 def simulate(
     t_end: float | None,
     save_every: float | None,
@@ -102,7 +102,7 @@ def simulate(
         if start is not None and not isinstance(start, cc.RandomPerturbation):
             raise InputError("--seed is for a random start, and the config has another one")
         start = cc.RandomPerturbation(seed=seed)
-    cell = Parameters.from_dict({**_SHOWN, **given.parameters, **chosen})
+    cell = Parameters.from_dict({**SHOWN.to_dict(), **given.parameters, **chosen})
     folder = _folder(output, overwrite)
     try:
         folder.mkdir(parents=True, exist_ok=True)

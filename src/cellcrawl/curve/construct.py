@@ -49,7 +49,7 @@ def from_path(path: np.ndarray, nodes: int) -> tuple[Curve, np.ndarray]:
     for _ in range(20):
         miss = parameter - target + ahead(parameter).real / mean_speed
         parameter = parameter - miss * mean_speed / pace(parameter).real
-        if np.max(np.abs(miss)) < 1e-14:
+        if np.max(np.abs(miss)) < 1e-9:  # Newton squares it
             break
     series = fourier.TrigonometricSeries(path)
     theta = np.unwrap(np.angle(series(parameter, order=1)))

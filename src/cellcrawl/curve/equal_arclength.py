@@ -101,7 +101,8 @@ class Curve:
         """Centroid of the enclosed area, shape (2,)."""
         arms = self.points - self.origin
         moments: np.ndarray = self.spacing * np.sum(arms**2 * self.normals, axis=0)
-        return moments / (2.0 * self.area) + self.origin
+        center: np.ndarray = moments / (2.0 * self.area) + self.origin
+        return center
 
     @property
     def circularity(self) -> float:

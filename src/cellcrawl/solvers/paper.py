@@ -290,5 +290,5 @@ def _fastest_rate(scalars: np.ndarray, fields: np.ndarray, edge: np.ndarray) -> 
 
 
 def _one_digit_below(value: float) -> float:
-    power = 10.0 ** math.floor(math.log10(value))
-    return math.floor(value / power) * power
+    power = math.floor(math.log10(value))
+    return float(f"{math.floor(value / 10.0**power)}e{power}")
