@@ -40,7 +40,9 @@ def one_of(name: str, value: Any, allowed: Iterable[str]) -> str:
     if not isinstance(value, str) or value not in words:
         hint = f" ({nearest_name(value, words)})" if isinstance(value, str) else ""
         choices = ", ".join(repr(word) for word in words)
-        raise InputError(f"{name} = {_shown(value)} is not known: it must be one of {choices}{hint}")
+        raise InputError(
+            f"{name} = {_shown(value)} is not known: it must be one of {choices}{hint}"
+        )
     return value
 
 

@@ -49,15 +49,17 @@ def from_path(path: np.ndarray, nodes: int) -> tuple[Curve, np.ndarray]:
     for _ in range(20):
         miss = parameter - target + ahead(parameter).real / mean_speed
         parameter = parameter - miss * mean_speed / pace(parameter).real
-        if np.max(np.abs(miss)) < 1e-14:
+        if np.max(np.abs(miss)) < 1e-9:  # Newton squares it
             break
     series = fourier.TrigonometricSeries(path)
     theta = np.unwrap(np.angle(series(parameter, order=1)))
     start = complex(path[0])
     curve = Curve(theta, 2.0 * math.pi * mean_speed, np.array([start.real, start.imag]))
     if curve.turning_number != 1:
-        raise InputError("the path is not a simple counter-clockwise curve: its tangent turns "
-                         f"{curve.turning_number} times, not once")
+        raise InputError(
+            "the path is not a simple counter-clockwise curve: its tangent turns "
+            f"{curve.turning_number} times, not once"
+        )
     return curve.closed(), parameter
 
 

@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 
 from cellcrawl.curve import fourier
-from cellcrawl.errors import InputError
 from cellcrawl.validation import real_array, real_number, whole_number
 
 FEWEST_NODES = 16
@@ -83,7 +82,8 @@ class Curve:
         """Positions of the nodes, shape (nodes, 2); a closure error is spread evenly."""
         tangent = np.exp(1j * self.theta)
         path = fourier.integral(tangent - tangent.mean(), self.length)
-        return np.column_stack([path.real, path.imag]) + self.origin
+        positions: np.ndarray = np.column_stack([path.real, path.imag]) + self.origin
+        return positions
 
     @cached_property
     def normals(self) -> np.ndarray:
@@ -101,7 +101,8 @@ class Curve:
         """Centroid of the enclosed area, shape (2,)."""
         arms = self.points - self.origin
         moments: np.ndarray = self.spacing * np.sum(arms**2 * self.normals, axis=0)
-        return moments / (2.0 * self.area) + self.origin
+        center: np.ndarray = moments / (2.0 * self.area) + self.origin
+        return center
 
     @property
     def circularity(self) -> float:

@@ -6,14 +6,12 @@ import numpy as np
 
 from cellcrawl._compile import exact_kernel
 
-_FILTER = 3.3306690738754716e-16  # (3 + 16 u) u: above it the rounded determinant has the right sign
+_FILTER = 3.3306690738754716e-16  # (3 + 16 u) u: above it the rounded determinant has the sign
 _SPLIT = 134217729.0  # 2**27 + 1 splits a double into two halves
 
 
 @exact_kernel
-def orientation(
-    ax: float, ay: float, bx: float, by: float, cx: float, cy: float
-) -> int:
+def orientation(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
     """+1 if a, b, c turn left, -1 if they turn right, 0 if they lie on one line: always exact."""
     left = (ax - cx) * (by - cy)
     right = (ay - cy) * (bx - cx)
@@ -24,9 +22,7 @@ def orientation(
 
 
 @exact_kernel
-def _exact_sign(
-    ax: float, ay: float, bx: float, by: float, cx: float, cy: float
-) -> int:
+def _exact_sign(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
     expansion = np.zeros(12)
     size = 0
     for u, v in ((ax, by), (-ax, cy), (bx, cy), (-bx, ay), (cx, ay), (-cx, by)):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bisect
+import itertools
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -64,7 +65,7 @@ class Schedule:
         return any(
             first[0] < end and second[0] > start and first[1] != second[1]
             for points in self._points.values()
-            for first, second in zip(points, points[1:], strict=False)
+            for first, second in itertools.pairwise(points)
             if first[0] < second[0]
         )
 
@@ -112,7 +113,7 @@ def _checked(name: str, points: Any) -> tuple[tuple[float, float], ...]:
 
 
 def _value(points: tuple[tuple[float, float], ...], time: float, side: Any) -> float:
-    following = side([point[0] for point in points], time)
+    following: int = side([point[0] for point in points], time)
     if following == 0:
         return points[0][1]
     if following == len(points):
