@@ -13,24 +13,24 @@ def wavenumbers(count: int) -> np.ndarray:
 
 
 def derivative(samples: np.ndarray, period: float) -> np.ndarray:
-    """Derivative of periodic samples with respect to a coordinate of the given period."""
+    """Differentiate periodic samples with respect to a coordinate of the given period."""
     k = wavenumbers(samples.size)
     if samples.size % 2 == 0:
         k[samples.size // 2] = 0.0  # the sawtooth has no derivative on its own nodes
-    result = np.fft.ifft(np.fft.fft(samples) * (2j * math.pi / period) * k)
+    result: np.ndarray = np.fft.ifft(np.fft.fft(samples) * (2j * math.pi / period) * k)
     return result if np.iscomplexobj(samples) else result.real
 
 
 def integral(samples: np.ndarray, period: float) -> np.ndarray:
-    """Running integral from sample 0 of periodic samples whose mean is zero."""
+    """Integrate periodic samples of mean zero, from sample 0 on."""
     k = wavenumbers(samples.size)
     spectrum = np.fft.fft(samples)
     spectrum[0] = 0.0
     if samples.size % 2 == 0:
         spectrum[samples.size // 2] = 0.0
     spectrum[1:] /= (2j * math.pi / period) * k[1:]
-    result = np.fft.ifft(spectrum)
-    result = result - result[0]
+    primitive: np.ndarray = np.fft.ifft(spectrum)
+    result = primitive - primitive[0]
     return result if np.iscomplexobj(samples) else result.real
 
 
