@@ -15,7 +15,8 @@ def kernel(function: F) -> F:
 
     NaN and infinity keep their meaning, so a kernel may test for them.
     """
-    return cast(F, numba.njit(cache=True, error_model="numpy", fastmath={"contract"})(function))
+    compiled = numba.njit(cache=True, error_model="numpy", fastmath={"contract"})(function)
+    return cast(F, compiled)
 
 
 def inlined_kernel(function: F) -> F:
@@ -28,4 +29,5 @@ def inlined_kernel(function: F) -> F:
 
 def exact_kernel(function: F) -> F:
     """Compile with strict IEEE arithmetic, for predicates whose sign must be right."""
-    return cast(F, numba.njit(cache=True, error_model="numpy")(function))
+    compiled = numba.njit(cache=True, error_model="numpy")(function)
+    return cast(F, compiled)

@@ -51,7 +51,7 @@ def from_path(path: np.ndarray, nodes: int) -> tuple[Curve, np.ndarray]:
     for _ in range(20):
         miss = parameter - target + ahead(parameter).real / mean_speed
         parameter = parameter - miss * mean_speed / pace(parameter).real
-        if np.max(np.abs(miss)) < 1e-14:
+        if np.max(np.abs(miss)) < 1e-9:  # Newton squares it
             break
     if not np.max(np.abs(miss)) < 1e-9:
         raise InputError("the path has corners too sharp to follow: smooth it or give more samples")

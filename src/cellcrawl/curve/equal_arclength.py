@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 
 from cellcrawl.curve import fourier
-from cellcrawl.errors import InputError
 from cellcrawl.validation import real_array, real_number, whole_number
 
 FEWEST_NODES = 16
@@ -104,8 +103,8 @@ class Curve:
         """Centroid of the enclosed area, shape (2,)."""
         arms = self.points - self.origin
         moments: np.ndarray = self.spacing * np.sum(arms**2 * self.normals, axis=0)
-        place: np.ndarray = moments / (2.0 * self.area) + self.origin
-        return place
+        center: np.ndarray = moments / (2.0 * self.area) + self.origin
+        return center
 
     @property
     def circularity(self) -> float:

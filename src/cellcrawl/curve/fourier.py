@@ -17,8 +17,8 @@ def derivative(samples: np.ndarray, period: float) -> np.ndarray:
     k = wavenumbers(samples.size)
     if samples.size % 2 == 0:
         k[samples.size // 2] = 0.0  # the sawtooth has no derivative on its own nodes
-    result: np.ndarray = np.fft.ifft(np.fft.fft(samples) * (2j * math.pi / period) * k)
-    return result if np.iscomplexobj(samples) else result.real
+    result = np.fft.ifft(np.fft.fft(samples) * (2j * math.pi / period) * k)
+    return np.asarray(result if np.iscomplexobj(samples) else result.real)
 
 
 def integral(samples: np.ndarray, period: float) -> np.ndarray:
@@ -29,9 +29,9 @@ def integral(samples: np.ndarray, period: float) -> np.ndarray:
     if samples.size % 2 == 0:
         spectrum[samples.size // 2] = 0.0
     spectrum[1:] /= (2j * math.pi / period) * k[1:]
-    primitive: np.ndarray = np.fft.ifft(spectrum)
-    result = primitive - primitive[0]
-    return result if np.iscomplexobj(samples) else result.real
+    result = np.fft.ifft(spectrum)
+    result = result - result[0]
+    return np.asarray(result if np.iscomplexobj(samples) else result.real)
 
 
 def resample(samples: np.ndarray, count: int) -> np.ndarray:
@@ -42,7 +42,8 @@ def resample(samples: np.ndarray, count: int) -> np.ndarray:
     padded[:kept] = spectrum[:kept]
     if min(samples.size, count) % 2 == 0 and samples.size != count:
         padded[kept - 1] *= 0.5 if count > samples.size else 2.0
-    return np.fft.irfft(padded, count) * (count / samples.size)
+    values: np.ndarray = np.fft.irfft(padded, count) * (count / samples.size)
+    return values
 
 
 class TrigonometricSeries:

@@ -10,9 +10,7 @@ import numpy as np
 
 from cellcrawl._compile import exact_kernel
 
-_FILTER = (
-    3.3306690738754716e-16  # (3 + 16 u) u: above it the rounded determinant has the right sign
-)
+_FILTER = 3.3306690738754716e-16  # (3 + 16 u) u: above it the rounded determinant has the sign
 _SPLIT = 134217729.0  # 2**27 + 1 splits a double into two halves
 
 

@@ -55,9 +55,7 @@ def frames_to_dataset(frames: Sequence[Frame], attributes: Mapping[str, Any]) ->
     }
     time = np.array([frame.time for frame in frames], dtype=float)
     described = {"long_name": TIME.long_name, "units": TIME.units}
-    return xr.Dataset(
-        variables, coords={"time": ("time", time, described)}, attrs=dict(attributes)
-    )
+    return xr.Dataset(variables, coords={"time": ("time", time, described)}, attrs=dict(attributes))
 
 
 def encode_attributes(attributes: Mapping[str, Any]) -> dict[str, Any]:
@@ -73,7 +71,9 @@ def decode_attribute(dataset: xr.Dataset, name: str) -> Any:
     try:
         return json.loads(dataset.attrs[name])
     except KeyError:
-        raise InputError(f"this dataset has no attribute {name!r}: is it a cellcrawl run?") from None
+        raise InputError(
+            f"this dataset has no attribute {name!r}: is it a cellcrawl run?"
+        ) from None
     except (TypeError, ValueError):
         raise InputError(f"the attribute {name!r} of this dataset is not valid JSON") from None
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Final, NamedTuple
+
+import numpy as np
 
 from cellcrawl.curve import Crossing, first_crossing
 from cellcrawl.solvers import Breakdown, Solver
@@ -32,23 +33,24 @@ class CrossingFound(NamedTuple):
 
 
 def locate_crossing(
-    solver: Solver, restore_valid: Callable[[], None], valid: float, crossed: float
+    solver: Solver, checkpoint: dict[str, np.ndarray], valid: float, crossed: float
 ) -> CrossingFound:
     """Narrow down when the edge crosses itself between ``valid`` and ``crossed``.
 
+    ``checkpoint`` is the solver's state when it was valid.
     The solver ends at the last valid time, from which its frame can be taken.
     """
     crossing = crossing_at(solver, crossed)
     while crossed - valid > _TIME_RESOLUTION:
         middle = 0.5 * (valid + crossed)
-        restore_valid()
+        solver.restore(checkpoint)
         broken = solver.advance(middle)
         found = None if broken else crossing_at(solver, middle)
         if broken is None and found is None:
             valid = middle
         else:
             crossed, crossing = middle, found or crossing
-    restore_valid()
+    solver.restore(checkpoint)
     solver.advance(valid)
     return CrossingFound(valid, Breakdown("fragmented", crossed, _tear(crossing, crossed, solver)))
 

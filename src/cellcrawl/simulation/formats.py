@@ -75,7 +75,10 @@ class Zarr:
     """A Zarr store, by the zarr package."""
 
     def open(self, path: Path) -> xr.Dataset:
-        return xr.open_zarr(path, consolidated=False, decode_times=False, chunks=None)
+        dataset: xr.Dataset = xr.open_zarr(
+            path, consolidated=False, decode_times=False, chunks=None
+        )
+        return dataset
 
     def write(
         self,
@@ -88,7 +91,7 @@ class Zarr:
         for number, part in enumerate(slices):
             part.attrs = dict(attributes)
             for variable in part.variables.values():
-                variable.encoding = {}
+                variable.encoding = {} if number else {"chunks": _chunks(variable, records)}
             where: dict[str, Any] = {"append_dim": "time"} if number else {"mode": "w"}
             part.to_zarr(path, consolidated=False, **where)
         _checkpoint_dataset(checkpoint).to_zarr(
@@ -112,19 +115,22 @@ def by_suffix(path: Path) -> Format:
 def write_netcdf(path: Path, dataset: xr.Dataset, checkpoint: Mapping[str, np.ndarray]) -> None:
     """Write a small dataset and its checkpoint to one netCDF file."""
     dataset.to_netcdf(path, engine="h5netcdf")
-    _checkpoint_dataset(checkpoint).to_netcdf(
-        path, engine="h5netcdf", group=_CHECKPOINT, mode="a"
-    )
+    _checkpoint_dataset(checkpoint).to_netcdf(path, engine="h5netcdf", group=_CHECKPOINT, mode="a")
 
 
 def _create(file: h5netcdf.File, first: xr.Dataset, total: int) -> None:
     file.dimensions = {"time": None, "node": first.sizes["node"]}
     for name, variable in first.variables.items():
-        across = first.sizes["node"] if "node" in variable.dims else 1
-        chunk = min(total, max(1, _CHUNK_BYTES // (8 * across)))
-        chunks = tuple(chunk if dim == "time" else first.sizes[dim] for dim in variable.dims)
+        chunks = _chunks(variable, total)
         created = file.create_variable(name, variable.dims, "f8", chunks=chunks)
         created.attrs.update(variable.attrs)
+
+
+def _chunks(variable: xr.Variable, records: int) -> tuple[int, ...]:
+    """Chunks of about a megabyte that hold whole edges, no longer than the run."""
+    across = variable.sizes.get("node", 1)
+    along = min(records, max(1, _CHUNK_BYTES // (8 * across)))
+    return tuple(along if dim == "time" else across for dim in variable.dims)
 
 
 def _netcdf_attributes(attributes: Mapping[str, Any]) -> dict[str, Any]:

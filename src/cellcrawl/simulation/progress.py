@@ -37,7 +37,7 @@ class Silent:
 
 
 class Bar:
-    """A bar with the time reached, the time left and the tension, on a terminal or in a notebook."""
+    """A bar with time reached, time left and tension, on a terminal or in a notebook."""
 
     def __init__(self, start: float, end: float) -> None:
         self._range = (start, end)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -58,12 +57,11 @@ class MemoryRecorder:
 
 
 class StoreRecorder:
-    """Writes blocks of frames to a `RunStore`, so that memory stays flat and a kill loses little."""
+    """Writes blocks of frames to a `RunStore`: memory stays flat and a kill loses little."""
 
-    def __init__(self, store: RunStore, records: int, *, overwrite: bool = False) -> None:
+    def __init__(self, store: RunStore, records: int) -> None:
         self._store = store
         self._records = records
-        self._overwrite = overwrite
         self._frames: list[Frame] = []
         self._flushed = -np.inf  # the first frame is made safe at once
 
@@ -87,15 +85,8 @@ class StoreRecorder:
         self._store.consolidate()
         return open_run(self._store.path)
 
-    @property
-    def path(self) -> Path:
-        """The store's path."""
-        return self._store.path
-
     def _write(
         self, frames: list[Frame], checkpoint: Checkpoint, attributes: Mapping[str, Any]
     ) -> None:
         block = frames_to_dataset(frames, encode_attributes(attributes)) if frames else None
-        self._store.write_block(
-            self._records, block, checkpoint, encode_attributes(attributes)
-        )
+        self._store.write_block(self._records, block, checkpoint, encode_attributes(attributes))

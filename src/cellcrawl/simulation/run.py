@@ -1,4 +1,4 @@
-"""`simulate` and `resume`: a solver, followed from one saved time to the next until the run ends."""
+"""`simulate` and `resume`: a solver, followed from saved time to saved time until the run ends."""
 
 from __future__ import annotations
 
@@ -217,9 +217,7 @@ class _Run:
             attributes = self._attributes(ended, reached)
             return self.recorder.finish(frame, self._checkpoint, attributes)
 
-    def _follow(
-        self, t_end: float, interruption: Interruption
-    ) -> tuple[Breakdown, float | None]:
+    def _follow(self, t_end: float, interruption: Interruption) -> tuple[Breakdown, float | None]:
         """Return how the run ended and the time of a closing record, None if it is on the grid."""
         self._checkpoint = self.solver.checkpoint()
         now = self._last_record() if self.records else -0.5 * _CHECK_EVERY
@@ -234,9 +232,7 @@ class _Run:
                     return ended, self._off_grid(max(last, now))
                 target = last
             if crossing_at(self.solver, target) is not None:
-                found = locate_crossing(
-                    self.solver, lambda: self.solver.restore(valid), now, target
-                )
+                found = locate_crossing(self.solver, valid, now, target)
                 self._checkpoint = self.solver.checkpoint()
                 return found.breakdown, self._off_grid(found.last_valid)
             valid, now = self.solver.checkpoint(), target
@@ -298,6 +294,5 @@ def _expect(value: Any, kind: Any, name: str) -> Any:
 def _check_options(scheme: type[Solver], options: dict[str, Any]) -> None:
     for name in options:
         if name not in scheme.OPTIONS:
-            raise InputError(
-                f"solver {scheme.name!r} has no option {name!r}: {nearest_name(name, scheme.OPTIONS)}"
-            )
+            hint = nearest_name(name, scheme.OPTIONS)
+            raise InputError(f"solver {scheme.name!r} has no option {name!r}: {hint}")

@@ -45,6 +45,7 @@ class RunStore:
         self.path = checked_path(path)
         self._format = formats.by_suffix(self.path)
         self.part = self.path.with_name(self.path.name + ".part")
+        self._nascent = self.part.with_name(self.part.name + ".new")
         self._merged = self.part / f"merged{self.path.suffix}"
         self._previous = self.part / f"previous{self.path.suffix}"
 
@@ -54,8 +55,8 @@ class RunStore:
 
     def remove(self) -> None:
         """Delete the run."""
-        _remove(self.part)
-        _remove(self.path)
+        for path in (self.part, self._nascent, self.path):
+            _remove(path)
 
     def write_block(
         self,
@@ -74,15 +75,21 @@ class RunStore:
         dataset = xr.Dataset(attrs=dict(attributes)) if block is None else block
         dataset.attrs["first_record"] = first
         try:
-            self.part.mkdir(parents=True, exist_ok=True)
+            # The folder comes into being with its first block in it, so it always opens.
+            folder = self.part if self.part.exists() else self._nascent
+            if folder is self._nascent:
+                _remove(folder)
+                folder.mkdir(parents=True)
             number = max((_block_number(path) for path in self._blocks()), default=-1) + 1
-            target = self.part / f"block-{number:06d}.nc"
+            target = folder / f"block-{number:06d}.nc"
             temporary = target.with_suffix(".tmp")
             formats.write_netcdf(temporary, dataset, checkpoint)
             _sync(temporary)
             temporary.replace(target)
+            if folder is self._nascent:
+                folder.replace(self.part)
         except OSError as error:
-            with contextlib.suppress(OSError):
+            with contextlib.suppress(OSError, UnboundLocalError):
                 temporary.unlink(missing_ok=True)
             raise StorageError(
                 f"cannot write to {self.part}: {error.strerror or error}; what was saved before "

@@ -69,6 +69,17 @@ class Solver(ABC):
         The scheme's own numbers, named in `OPTIONS`.
     """
 
+    def __init__(
+        self,
+        start: CellState | None,
+        conditions: Conditions,
+        time: float = 0.0,
+        *,
+        nodes: int,
+        **options: Any,
+    ) -> None:
+        raise NotImplementedError
+
     name: ClassVar[str]
     OPTIONS: ClassVar[dict[str, str]]
     """Names of the scheme's options with a line on each, for help and error messages."""
