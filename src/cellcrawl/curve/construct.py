@@ -140,17 +140,17 @@ def from_polygon(xy: Any, nodes: int, smoothing: float = 0.01) -> Curve:
 def simple_polygon(xy: Any) -> np.ndarray:
     """Return the vertices of ``xy`` counter-clockwise without repeats, or raise `InputError`."""
     vertices = real_array("outline", xy, (None, 2))
-    reach = np.abs(vertices).max(initial=0.0)
-    if reach > LARGEST or reach < 1.0 / LARGEST:
-        raise InputError(
-            f"the outline reaches {reach:.3g} from the origin: give it in a unit in which it "
-            f"reaches {1.0 / LARGEST:g} to {LARGEST:g}"
-        )
     if len(vertices):
         keep = np.any(vertices != np.roll(vertices, 1, axis=0), axis=1)
         vertices = vertices[keep]
     if len(vertices) < 3:
         raise InputError(f"the outline has {len(vertices)} distinct vertices: it needs at least 3")
+    reach = np.abs(vertices).max()
+    if reach > LARGEST or reach < 1.0 / LARGEST:
+        raise InputError(
+            f"the outline reaches {reach:.3g} from the origin: give it in a unit in which it "
+            f"reaches {1.0 / LARGEST:g} to {LARGEST:g}"
+        )
     crossing = first_crossing(vertices)
     if crossing is not None:
         first, second = crossing.edges

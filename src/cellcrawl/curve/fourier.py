@@ -13,7 +13,7 @@ def wavenumbers(count: int) -> np.ndarray:
 
 
 def derivative(samples: np.ndarray, period: float) -> np.ndarray:
-    """Differentiate periodic samples with respect to a coordinate of the given period."""
+    """Derivative of periodic samples with respect to a coordinate of the given period."""
     k = wavenumbers(samples.size)
     if samples.size % 2 == 0:
         k[samples.size // 2] = 0.0  # the sawtooth has no derivative on its own nodes
@@ -22,7 +22,7 @@ def derivative(samples: np.ndarray, period: float) -> np.ndarray:
 
 
 def integral(samples: np.ndarray, period: float) -> np.ndarray:
-    """Integrate periodic samples of mean zero, from sample 0 on."""
+    """Running integral from sample 0 of periodic samples whose mean is zero."""
     k = wavenumbers(samples.size)
     spectrum = np.fft.fft(samples)
     spectrum[0] = 0.0
