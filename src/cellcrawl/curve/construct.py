@@ -14,6 +14,8 @@ from cellcrawl.curve.equal_arclength import FEWEST_NODES, Curve
 from cellcrawl.errors import InputError
 from cellcrawl.validation import real_array, real_number, whole_number
 
+LARGEST = 1e12  # coordinates of an outline
+
 
 def from_path(path: np.ndarray, nodes: int) -> tuple[Curve, np.ndarray]:
     """Curve through a smooth closed path, and the path's parameter at each node.
@@ -51,6 +53,8 @@ def from_path(path: np.ndarray, nodes: int) -> tuple[Curve, np.ndarray]:
         parameter = parameter - miss * mean_speed / pace(parameter).real
         if np.max(np.abs(miss)) < 1e-9:  # Newton squares it
             break
+    if not np.max(np.abs(miss)) < 1e-9:
+        raise InputError("the path has corners too sharp to follow: smooth it or give more samples")
     series = fourier.TrigonometricSeries(path)
     theta = np.unwrap(np.angle(series(parameter, order=1)))
     start = complex(path[0])
@@ -81,7 +85,10 @@ def from_polar(radius: Callable[[np.ndarray], Any], nodes: int, samples: int = 4
 def polar_path(radius: Callable[[np.ndarray], Any], samples: int) -> np.ndarray:
     """``R(phi) exp(i phi)`` at equal steps of phi; raises `InputError` unless R is positive."""
     angle = 2.0 * math.pi * np.arange(samples) / samples
-    values = real_array("radius", np.broadcast_to(radius(angle), angle.shape), (None,))
+    values = real_array("radius", radius(angle), None)
+    if values.shape not in ((), (samples,)):
+        raise InputError(f"the radius has shape {values.shape} for angles of shape ({samples},)")
+    values = np.broadcast_to(values, (samples,))
     if values.min() <= 0.0:
         at = angle[values.argmin()]
         raise InputError(
@@ -138,6 +145,12 @@ def simple_polygon(xy: Any) -> np.ndarray:
         vertices = vertices[keep]
     if len(vertices) < 3:
         raise InputError(f"the outline has {len(vertices)} distinct vertices: it needs at least 3")
+    reach = np.abs(vertices).max()
+    if reach > LARGEST or reach < 1.0 / LARGEST:
+        raise InputError(
+            f"the outline reaches {reach:.3g} from the origin: give it in a unit in which it "
+            f"reaches {1.0 / LARGEST:g} to {LARGEST:g}"
+        )
     crossing = first_crossing(vertices)
     if crossing is not None:
         first, second = crossing.edges

@@ -19,6 +19,7 @@ from cellcrawl.curve import fourier
 from cellcrawl.validation import real_array, real_number, whole_number
 
 FEWEST_NODES = 16
+_CLOSED = 1e-13  # closure error that rounding leaves
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +76,8 @@ class Curve:
         """``kappa = d theta / ds`` at the nodes, shape (nodes,)."""
         winding = 2.0 * math.pi * np.arange(self.nodes) / self.nodes
         slope = fourier.derivative(self.theta - winding, 2.0 * math.pi)
-        return (1.0 + slope) * (2.0 * math.pi / self.length)
+        kappa: np.ndarray = (1.0 + slope) * (2.0 * math.pi / self.length)
+        return kappa
 
     @cached_property
     def points(self) -> np.ndarray:
@@ -121,7 +123,13 @@ class Curve:
         return round(float(np.sum(np.angle(np.exp(1j * steps)))) / (2.0 * math.pi))
 
     def closed(self) -> Curve:
-        """Return the curve projected to close: the least change of theta (in the mean square)."""
+        """Return the curve projected to close: the least change of theta (in the mean square).
+
+        Raises
+        ------
+        InputError
+            For a curve too far from closing, such as a straight line.
+        """
         theta = self.theta.copy()
         for _ in range(20):
             cosine, sine = np.cos(theta), np.sin(theta)
@@ -130,9 +138,17 @@ class Curve:
                 break
             cross = np.mean(sine * cosine)
             slope = np.array([[-np.mean(sine * sine), -cross], [cross, np.mean(cosine * cosine)]])
+            if abs(np.linalg.det(slope)) < 1e-12:
+                break  # a straight line
             a, b = np.linalg.solve(slope, -gap)
             theta += a * sine + b * cosine
-        return dataclasses.replace(self, theta=theta)
+        result = dataclasses.replace(self, theta=theta)
+        if result.closure_error > _CLOSED:
+            raise InputError(
+                f"the curve does not close: its ends are {self.closure_error:.3g} of its length "
+                "apart and no small change of its tangent brings them together"
+            )
+        return result
 
     def moved(self, shift: Any) -> Curve:
         """Return the curve translated by ``shift``, shape (2,)."""

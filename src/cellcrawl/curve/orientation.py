@@ -1,4 +1,8 @@
-"""The exact sign of the area of a triangle in floating point (after Shewchuk, 1997)."""
+"""The exact sign of the area of a triangle in floating point (after Shewchuk, 1997).
+
+Exact as long as no product of two coordinates overflows or loses digits by underflow, so for
+coordinates that are 0 or of a magnitude from 1e-130 to 1e130.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +41,7 @@ def _exact_sign(ax: float, ay: float, bx: float, by: float, cx: float, cy: float
 
 @exact_kernel
 def _product(a: float, b: float) -> tuple[float, float]:
-    """``a * b`` as a rounded product and its exact error."""
+    """Return ``a * b`` rounded, and its exact error."""
     high = a * b
     c = _SPLIT * a
     a_high = c - (c - a)

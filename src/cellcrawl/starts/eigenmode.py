@@ -7,10 +7,11 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from cellcrawl.errors import InputError
 from cellcrawl.linear import base_state, growth_rates
 from cellcrawl.parameters import Parameters
 from cellcrawl.starts.base import CellState
-from cellcrawl.starts.fourier import perturbed_circle
+from cellcrawl.starts.fourier import need_nodes, perturbed_circle
 from cellcrawl.validation import one_of, real_number, whole_number
 
 BRANCHES = ("+", "-")
@@ -37,7 +38,8 @@ class Eigenmode:
         The field that has the amplitude. A growing mode k = 1 has a bound fraction and off-rate far
         larger than its radius (off-rate over radius is about -2600 at r_on = 25, zeta_1 = 600), so
         small amplitudes of the radius are large ones of the rest. A mode with growth rate 0 (k = 1,
-        the other branch) is a shift of the circle and has no bound fraction.
+        the other branch) is a shift of the circle and has no bound fraction; without adhesive
+        friction one branch has no radius.
     """
 
     k: int
@@ -48,24 +50,34 @@ class Eigenmode:
     def __post_init__(self) -> None:
         object.__setattr__(self, "k", whole_number("k", self.k, 0, 1000))
         object.__setattr__(self, "amplitude", real_number("amplitude", self.amplitude, -0.5, 0.5))
-        one_of("branch", self.branch, BRANCHES)
-        one_of("carrier", self.carrier, CARRIERS)
+        object.__setattr__(self, "branch", one_of("branch", self.branch, BRANCHES))
+        object.__setattr__(self, "carrier", one_of("carrier", self.carrier, CARRIERS))
 
     def growth_rate(self, parameters: Parameters) -> complex:
         """Return the growth rate of this mode."""
         return complex(growth_rates(parameters, self.k)[BRANCHES.index(self.branch)])
 
     def state(self, parameters: Parameters, nodes: int) -> CellState:
-        """Return the first state on ``nodes`` nodes, with node 0 at the mode's crest of radius."""
+        """Return the first state on ``nodes`` nodes, node 0 at the crest of the carrier.
+
+        Raises
+        ------
+        InputError
+            If the mode has nothing of the carrier, or the nodes are too few for its waves.
+        """
         p, base = parameters, base_state(parameters)
+        need_nodes(nodes, self.k)
         rate = self.growth_rate(p)
         q = p.r_on + p.r_p + p.D * self.k**2
-        off_rate = -rate / (p.epsilon * base.c)  # for a radius of amplitude 1
-        bound = -base.bound_fraction * off_rate / (rate + q)
-        scale = complex(self.amplitude)
-        if self.carrier == "bound_fraction":
-            scale = self.amplitude / bound if bound != 0 else complex(0.0)
-        radius, bound = scale, bound * scale
+        shape = {"radius": p.epsilon * base.c * (rate + q), "bound_fraction": p.n_bar * rate}
+        if abs(rate if self.carrier == "bound_fraction" else rate + q) < 1e-12 * q:
+            other = next(name for name in CARRIERS if name != self.carrier)
+            raise InputError(
+                f"mode k = {self.k}, branch {self.branch!r}, has no {self.carrier} at these "
+                f"parameters: give carrier={other!r}"
+            )
+        scale = self.amplitude / shape[self.carrier]
+        radius, bound = shape["radius"] * scale, shape["bound_fraction"] * scale
         tension = 2.0 * math.pi * p.tension_rate * radius.real if self.k == 0 else 0.0
         return perturbed_circle(
             p,

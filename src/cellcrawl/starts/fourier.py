@@ -15,7 +15,7 @@ from cellcrawl.curve.construct import polar_path
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import Parameters
 from cellcrawl.starts.base import CellState
-from cellcrawl.validation import real_number, table, whole_number
+from cellcrawl.validation import real_number, shown, table, whole_number
 
 _HIGHEST_MODE = 1000
 Modes = Mapping[int, tuple[float, float]]
@@ -52,6 +52,7 @@ class PerturbedCircle:
 
     def state(self, parameters: Parameters, nodes: int) -> CellState:
         """Return the first state on ``nodes`` nodes."""
+        need_nodes(nodes, max([0, *self.radius, *self.bound_fraction]))
         return perturbed_circle(parameters, nodes, self.radius, self.bound_fraction)
 
     def describe(self) -> dict[str, Any]:
@@ -117,6 +118,14 @@ def perturbed_circle(
     return CellState(curve, bound, parameters.sigma_bar + tension_change)
 
 
+def need_nodes(nodes: int, highest: int) -> None:
+    """Raise `InputError` if a mode has fewer than two nodes a wave."""
+    if nodes <= 2 * highest:
+        raise InputError(
+            f"nodes = {nodes} cannot show mode k = {highest}: it needs more than {2 * highest}"
+        )
+
+
 def _sum(modes: Modes, angle: np.ndarray) -> np.ndarray:
     total = np.zeros_like(angle)
     for k, (cosine, sine) in modes.items():
@@ -125,15 +134,16 @@ def _sum(modes: Modes, angle: np.ndarray) -> np.ndarray:
 
 
 def _checked_modes(name: str, modes: Any) -> dict[int, tuple[float, float]]:
-    checked = {}
-    for k, pair in table(name, modes).items():
-        number = whole_number(f"{name} mode", int(k) if str(k).isdigit() else k, 0, _HIGHEST_MODE)
-        try:
-            cosine, sine = pair
-        except (TypeError, ValueError):
-            raise InputError(f"{name}[{k}] must be a pair of numbers, not {pair!r}") from None
-        checked[number] = (
-            real_number(f"{name}[{k}] cosine", cosine, -10.0, 10.0),
-            real_number(f"{name}[{k}] sine", sine, -10.0, 10.0),
+    checked: dict[int, tuple[float, float]] = {}
+    for given, pair in table(name, modes).items():
+        k = int(given) if isinstance(given, str) and given.isdecimal() and len(given) < 9 else given
+        k = whole_number(f"{name} mode", k, 0, _HIGHEST_MODE)  # TOML and JSON have them as text
+        if k in checked:
+            raise InputError(f"{name}[{k}] is given twice")
+        if not isinstance(pair, (list, tuple, np.ndarray)) or len(pair) != 2:
+            raise InputError(f"{name}[{k}] must be a pair of numbers, not {shown(pair)}")
+        checked[k] = (
+            real_number(f"{name}[{k}] cosine", pair[0], -10.0, 10.0),
+            real_number(f"{name}[{k}] sine", pair[1], -10.0, 10.0),
         )
     return checked

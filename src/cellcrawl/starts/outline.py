@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from cellcrawl.curve import Curve, fourier, from_polygon, simple_polygon
+from cellcrawl.errors import InputError
 from cellcrawl.parameters import Parameters
 from cellcrawl.starts.base import CellState
 from cellcrawl.validation import real_array, real_number
@@ -46,16 +47,21 @@ class FromOutline:
     smoothing: float = 0.01
 
     def __post_init__(self) -> None:
-        simple_polygon(self.xy)
-        object.__setattr__(self, "xy", real_array("outline", self.xy, (None, 2)))
+        xy = real_array("outline", self.xy, (None, 2))
+        simple_polygon(xy)
+        xy.setflags(write=False)
+        object.__setattr__(self, "xy", xy)
         if self.bound_fraction is not None:
-            bound = np.broadcast_to(np.asarray(self.bound_fraction, dtype=float), len(self.xy))
-            object.__setattr__(self, "bound_fraction", real_array("bound_fraction", bound, (None,)))
+            bound = self._checked_bound()
+            bound.setflags(write=False)
+            object.__setattr__(self, "bound_fraction", bound)
         if self.radius is not None:
-            real_number("radius", self.radius, 0.0, math.inf, open_low=True)
+            radius = real_number("radius", self.radius, 0.0, 1e6, open_low=True)
+            object.__setattr__(self, "radius", radius)
         if self.tension is not None:
-            real_number("tension", self.tension, -1e12, 1e12)
-        real_number("smoothing", self.smoothing, 0.001, 0.1)
+            object.__setattr__(self, "tension", real_number("tension", self.tension, -1e12, 1e12))
+        smoothing = real_number("smoothing", self.smoothing, 0.001, 0.1)
+        object.__setattr__(self, "smoothing", smoothing)
 
     def state(self, parameters: Parameters, nodes: int) -> CellState:
         """Return the first state on ``nodes`` nodes."""
@@ -81,6 +87,17 @@ class FromOutline:
             "radius": self.radius,
             "smoothing": self.smoothing,
         }
+
+    def _checked_bound(self) -> np.ndarray:
+        bound = real_array("bound_fraction", self.bound_fraction, None)
+        if bound.shape not in ((), (len(self.xy),)):
+            raise InputError(f"bound_fraction has shape {bound.shape}: it must have one a vertex")
+        bound = np.broadcast_to(bound, len(self.xy)).copy()
+        for vertex in np.flatnonzero((bound < 0.0) | (bound > 1.0))[:1]:
+            raise InputError(
+                f"bound_fraction is {bound[vertex]:.4g} at vertex {vertex}: it must be from 0 to 1"
+            )
+        return bound
 
     def _bound_along(self, curve: Curve) -> np.ndarray:
         """Bound fraction at the nodes: that of the nearest point of the polygon, smoothed."""
