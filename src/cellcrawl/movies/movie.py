@@ -48,8 +48,8 @@ def movie(
         ``cell.mp4`` (H.264) or ``cell.gif``. Written under another name beside it and renamed
         when complete; a file that is there is replaced.
     fps : float
-        Frames a second, up to 120. In a GIF it is rounded to a whole number of hundredths of a
-        second between frames, at most 50 frames a second.
+        Frames a second, from 0.1 to 120. In a GIF the time between frames is a whole number of
+        hundredths of a second, at least two.
     seconds : float, optional
         Length of the movie.
     every : float, optional
@@ -90,14 +90,14 @@ def movie(
     suffix = target.suffix.lower()
     one_of("movie view", view, VIEWS)
     edge_field(field)
-    rate = real_number("fps", fps, 0.0, 120.0, open_low=True)
+    rate = real_number("movie fps", fps, 0.1, 120.0)
     pixels = _pixels(_USUAL_SIZE[suffix] if size is None else size, even=suffix == ".mp4")
     records = frame_records(run["time"].values, rate, seconds, every)
     if suffix == ".mp4":
         encoder()
-    scene = Scene(run.load(), field, limits, view, pixels)
+    scene = Scene(run, records, field, limits, view, pixels)
     with _renamed_when_complete(target) as unfinished:
-        frames = _frames(scene, records, progress)
+        frames = _frames(scene, records.size, progress)
         if suffix == ".mp4":
             write_mp4(unfinished, frames, pixels, rate)
         else:
@@ -105,11 +105,11 @@ def movie(
     return target
 
 
-def _frames(scene: Scene, records: np.ndarray, progress: bool) -> Iterator[np.ndarray]:
+def _frames(scene: Scene, count: int, progress: bool) -> Iterator[np.ndarray]:
     from tqdm.auto import tqdm
 
-    for record in tqdm(records, desc="movie", unit="frame", disable=not progress):
-        yield scene.draw(int(record))
+    for frame in tqdm(range(count), desc="movie", unit="frame", disable=not progress):
+        yield scene.draw(frame)
 
 
 def _target(path: Any) -> Path:

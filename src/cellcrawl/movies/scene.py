@@ -28,12 +28,14 @@ _LIGHT = "#d9d9d9"
 
 
 class Scene:
-    """A cell on its path, ready to be drawn at any record.
+    """A cell on its path, ready to be drawn at each of some records.
 
     Parameters
     ----------
     dataset : Dataset
-        A run, in memory or on disk.
+        A run, in memory or on disk; only what is shown is read.
+    records : array of int, shape (frames,)
+        The records to show.
     field : str
         The field that colours the edge.
     limits : (float, float) or None
@@ -47,17 +49,22 @@ class Scene:
     def __init__(
         self,
         dataset: xr.Dataset,
+        records: np.ndarray,
         field: str,
         limits: Limits | None,
         view: str,
         size: tuple[int, int],
     ) -> None:
-        self._run = dataset
+        shown = dataset.isel(time=records)
+        self._points = np.stack([shown["x"].values, shown["y"].values], axis=-1)
+        self._values = shown[field].values
+        self._longest = float(shown["length"].values.max())
+        self._records = records
         self._field = field
         self._follows = view == "follow"
         self._track = np.column_stack([dataset["centroid_x"].values, dataset["centroid_y"].values])
-        self._times = dataset["time"].values
-        self._digits = _digits(self._times)
+        self._times = shown["time"].values
+        self._digits = _digits(dataset["time"].values)
         with mpl.rc_context(STYLE):
             self._build(size, limits)
 
@@ -72,7 +79,7 @@ class Scene:
         strip.set_axis_off()
         view = np.array([size[0], size[1] * (1.0 - _STRIP)])
         self._frame(view)
-        values = self._run[self._field].values
+        values = self._values
         norm = norm_for(self._field, values, limits)
         self._grid = LineCollection([], colors=_LIGHT, linewidths=0.6, zorder=0)
         self._line = self._ax.plot([], [], color=TRACK, linewidth=1.2, zorder=1)[0]
@@ -91,7 +98,7 @@ class Scene:
         self._ax.add_collection(self._edge, autolim=False)
         self._clock = _clock(strip)
         self._stride = self._thinning(size[0])
-        pieces = len(range(0, self._run.sizes["node"], self._stride))
+        pieces = len(range(0, self._points.shape[1], self._stride))
         self._edge.set_segments(list(np.zeros((pieces, 3, 2))))
         self._moving = [self._grid, self._body, self._line, self._edge, self._dot, self._clock]
         for artist in self._moving:
@@ -104,16 +111,13 @@ class Scene:
     def _frame(self, view: np.ndarray) -> None:
         """Set what is in view: half its width and height is `_reach`, its middle `_middle`."""
         shape = view / view[1]
-        x, y = self._run["x"].values, self._run["y"].values
+        points = self._points
         if self._follows:
-            widest = max(
-                float(np.abs(across - self._track[:, [axis]]).max())
-                for axis, across in enumerate((x, y))
-            )
+            widest = float(np.abs(points - self._track[self._records, None]).max())
             self._middle = np.zeros(2)
             self._reach = _ROOM * widest * shape / shape.min()
         else:
-            low, high = np.array([x.min(), y.min()]), np.array([x.max(), y.max()])
+            low, high = points.min(axis=(0, 1)), points.max(axis=(0, 1))
             self._middle = 0.5 * (low + high)
             self._reach = float(np.max(0.5 * (high - low) / shape)) * 1.15 * shape
         self._ax.set_xlim(self._middle[0] - self._reach[0], self._middle[0] + self._reach[0])
@@ -122,8 +126,8 @@ class Scene:
     def _thinning(self, width: float) -> int:
         """Return of how many nodes one is drawn."""
         per_unit = width / (2.0 * float(self._reach[0]))
-        longest = float(self._run["length"].values.max()) * per_unit
-        return max(1, round(_PIXELS_A_PIECE * self._run.sizes["node"] / longest))
+        pixels_a_node = self._longest * per_unit / self._points.shape[1]
+        return max(1, round(float(_PIXELS_A_PIECE / pixels_a_node)))
 
     def _add_colour_bar(self, figure: Figure, values: np.ndarray, norm: Normalize) -> None:
         scale = SCALES[self._field]
@@ -138,24 +142,24 @@ class Scene:
         label = f"{scale.name} {scale.symbol}"
         box.text(-0.03, 0.5, label, transform=box.transAxes, ha="right", va="center", size=8.5)
 
-    def draw(self, record: int) -> np.ndarray:
-        """Return the picture at a record, shape (height, width, 4), 8 bits each.
+    def draw(self, frame: int) -> np.ndarray:
+        """Return the picture of a frame, shape (height, width, 4), 8 bits each.
 
         The array is the canvas itself: the next call overwrites it.
         """
+        record = self._records[frame]
         camera = self._track[record] if self._follows else np.zeros(2)
-        cell = self._run.isel(time=record)
-        points = np.column_stack([cell["x"].values, cell["y"].values])[:: self._stride] - camera
+        points = self._points[frame, :: self._stride] - camera
         for path, piece in zip(self._edge.get_paths(), segments(points), strict=True):
             np.copyto(np.asarray(path.vertices), piece)  # far quicker than new paths
-        self._edge.set_array(cell[self._field].values[:: self._stride])
+        self._edge.set_array(self._values[frame, :: self._stride])
         self._body.set_xy(points)
         past = self._track[: record + 1] - camera
         self._line.set_data(past[:, 0], past[:, 1])
         self._dot.set_data(past[-1:, 0], past[-1:, 1])
         if self._follows:
             self._grid.set_segments(self._grid_lines(camera))
-        self._clock.set_text(f"{self._times[record]:.{self._digits}f}")
+        self._clock.set_text(f"{self._times[frame]:.{self._digits}f}")
         self._canvas.restore_region(self._background)
         for artist in self._moving:
             self._ax.draw_artist(artist)

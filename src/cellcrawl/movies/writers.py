@@ -64,15 +64,16 @@ def write_gif(path: Path, frames: Iterable[np.ndarray], fps: float) -> None:
     """Write frames, shape (height, width, 4), as a GIF that repeats; all share one palette."""
     images = _palette_images(iter(frames))
     first = next(images)
-    first.save(
-        path,
-        format="GIF",
-        save_all=True,
-        append_images=images,
-        duration=max(20, 10 * round(100.0 / fps)),
-        loop=0,
-        optimize=False,
-    )
+    with path.open("wb") as file:
+        first.save(
+            file,
+            format="GIF",
+            save_all=True,
+            append_images=images,
+            duration=max(20, 10 * round(100.0 / fps)),
+            loop=0,
+            optimize=False,
+        )
 
 
 def encoder() -> str:
@@ -92,8 +93,19 @@ def _palette_images(frames: Iterator[np.ndarray]) -> Iterator[Image.Image]:
     for frame in frames:
         image = Image.fromarray(frame[..., :3])
         if palette is None:
-            palette = image.quantize(_COLOURS, dither=Image.Dither.NONE)
+            palette = _with_white(image.quantize(_COLOURS, dither=Image.Dither.NONE))
         yield image.quantize(palette=palette, dither=Image.Dither.NONE)
+
+
+def _with_white(image: Image.Image) -> Image.Image:
+    """Make all nearly white colours of the palette white, so that the background stays white.
+
+    Pillow finds the nearest colour only up to a few levels.
+    """
+    colours = np.array(image.getpalette(), dtype=np.uint8).reshape(-1, 3)
+    colours[colours.min(axis=1) >= 248] = 255
+    image.putpalette(colours.tobytes())
+    return image
 
 
 def _out_of_reach_of_ctrl_c() -> dict[str, Any]:

@@ -69,7 +69,7 @@ def cell(
     run = drawable(dataset)
     edge_field(field)
     record = record_at(run, run["time"].values[-1] if time is None else time)
-    points, values = edge_points(run, record), run[field].values[record]
+    points, values = edge_points(run, record), run[field].isel(time=record).values
     with axes_or_new(ax, COLUMN, 0.85 * COLUMN, equal=True) as axes:
         edge = draw_cell(
             axes, points, values, field, norm_for(field, values, limits), linewidth=2.5
@@ -124,7 +124,7 @@ def snapshots(
     edge_field(field)
     records = records_at(run, times)
     points = [edge_points(run, record) for record in records]
-    values = run[field].values[records]
+    values = run[field].isel(time=records).values
     norm = norm_for(field, values, limits)
     reach = 0.5 * max(float(np.ptp(outline, axis=0).max()) for outline in points) + 0.1
     start = np.array([run["centroid_x"].values[0], run["centroid_y"].values[0]])

@@ -9,7 +9,6 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
 from cellcrawl import observables
-from cellcrawl.errors import InputError
 from cellcrawl.plot.edge import colour_bar
 from cellcrawl.plot.inputs import drawable
 from cellcrawl.plot.scales import SCALES, TIME_LABEL, Limits, norm_for
@@ -32,7 +31,7 @@ def kymograph(
     Parameters
     ----------
     dataset : Dataset
-        A run of two records or more.
+        A run.
     field : str
         A field on the edge.
     origin : {"front", "material"}
@@ -49,7 +48,8 @@ def kymograph(
     Raises
     ------
     InputError
-        For an unknown field or origin, a run of a single record, or a dataset that is no run.
+        For an unknown field or origin, a cell that never moves and so has no front, or
+        a dataset that is no run.
 
     Notes
     -----
@@ -70,7 +70,7 @@ def kymographs(dataset: xr.Dataset, *, origin: str = "front") -> Figure:
     Parameters
     ----------
     dataset : Dataset
-        A run of two records or more.
+        A run.
     origin : {"front", "material"}
         The front in the middle, or a material point at the bottom; see `observables.kymograph`.
 
@@ -81,7 +81,8 @@ def kymographs(dataset: xr.Dataset, *, origin: str = "front") -> Figure:
     Raises
     ------
     InputError
-        For an unknown origin, a run of a single record, or a dataset that is no run.
+        For an unknown origin, a cell that never moves and so has no front, or
+        a dataset that is no run.
     """
     run = drawable(dataset)
     with paper_figure(PAGE, 3.4) as figure:
@@ -99,10 +100,8 @@ def kymographs(dataset: xr.Dataset, *, origin: str = "front") -> Figure:
 def _draw(ax: Axes, run: xr.Dataset, field: str, origin: str, limits: Limits | None) -> AxesImage:
     shown = observables.kymograph(run, field, origin)
     times, arclength = shown["time"].values, shown["arclength"].values
-    if times.size < 2:
-        raise InputError("a kymograph needs 2 records or more; this run has 1")
     values = _on_even_times(times, shown.values)
-    half_t = 0.5 * (times[-1] - times[0]) / (times.size - 1)
+    half_t = 0.5 * (times[-1] - times[0]) / max(times.size - 1, 1) or 0.5  # one record: a band
     half_s = 0.5 / arclength.size
     image = ax.imshow(
         values.T,
@@ -117,7 +116,8 @@ def _draw(ax: Axes, run: xr.Dataset, field: str, origin: str, limits: Limits | N
         origin="lower",
         aspect="auto",
     )
-    ax.set_xlim(float(times[0]), float(times[-1]))
+    if times.size > 1:
+        ax.set_xlim(float(times[0]), float(times[-1]))
     ax.set_yticks([-0.5, 0.0, 0.5] if origin == "front" else [0.0, 0.5, 1.0])
     colour_bar(image, ax, field, values, short=True)
     return image
@@ -126,7 +126,7 @@ def _draw(ax: Axes, run: xr.Dataset, field: str, origin: str, limits: Limits | N
 def _on_even_times(times: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Return ``values`` (time, node) at evenly spaced times: the last record may be nearer."""
     even = np.linspace(times[0], times[-1], times.size)
-    if np.allclose(times, even, rtol=0.0, atol=1e-3 * (even[1] - even[0])):
+    if times.size == 1 or np.allclose(times, even, rtol=0.0, atol=1e-3 * (even[1] - even[0])):
         return values
     after = np.clip(np.searchsorted(times, even), 1, times.size - 1)
     part = ((even - times[after - 1]) / (times[after] - times[after - 1]))[:, None]

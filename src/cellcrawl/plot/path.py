@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from cellcrawl.errors import InputError
 from cellcrawl.observables import speed
 from cellcrawl.observables.inputs import edge_field
 from cellcrawl.plot.edge import colour_bar, draw_cell, edge_points, frame, scale_bar
@@ -16,7 +17,8 @@ from cellcrawl.validation import real_number
 
 _STEPS = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.5, 8.0, 10.0)
 _MARGIN = 0.2  # around the contours, in R_0
-_FEWEST_APART = 0.4  # of `every`: nearer contours than this are not added at the end
+_MOST = 1000
+_NEAREST = 0.4  # of `every`: nearer contours than this are not added at the end
 
 
 def path(
@@ -65,7 +67,7 @@ def path(
     points = [edge_points(run, record) for record in records]
     track = np.column_stack([run["centroid_x"].values, run["centroid_y"].values])
     low, high = _box([*points, track])
-    values = run[field].values[records]
+    values = run[field].isel(time=records).values
     norm = norm_for(field, values, limits)
     wide, tall = high - low + 2.0 * _MARGIN
     height = np.clip(COLUMN * 0.85 * tall / wide + 0.25, 1.4, 1.5 * COLUMN)
@@ -122,10 +124,14 @@ def _left_over(duration: float, step: float) -> float:
 def _contours(dataset: xr.Dataset, every: float) -> list[int]:
     times = dataset["time"].values
     first, last = float(times[0]), float(times[-1])
+    if (last - first) / every > _MOST:
+        raise InputError(
+            f"every = {every:g} would draw more than {_MOST} contours: give a longer one"
+        )
     chosen = first + every * np.arange(int((last - first) / every * (1.0 + 1e-9)) + 1)
     records = [record_at(dataset, min(time, last)) for time in chosen]
     if dataset.attrs.get("status", "completed") != "completed":
-        if len(records) > 1 and last - chosen[-1] < _FEWEST_APART * every:
+        if len(records) > 1 and last - chosen[-1] < _NEAREST * every:
             records.pop()
         records.append(times.size - 1)
     return list(dict.fromkeys(records))

@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 from typing import Any
 
+import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from cellcrawl.observables import front_position
 from cellcrawl.plot.inputs import drawable
 from cellcrawl.plot.kymograph import kymograph
 from cellcrawl.plot.path import path
@@ -22,7 +24,7 @@ def summary(dataset: xr.Dataset, every: float | None = None) -> Figure:
     Parameters
     ----------
     dataset : Dataset
-        A run of two records or more.
+        A run.
     every : float, optional
         Time between the contours along the path; see `path`.
 
@@ -33,15 +35,14 @@ def summary(dataset: xr.Dataset, every: float | None = None) -> Figure:
     Raises
     ------
     InputError
-        For an ``every`` that is not above 0, a run of a single record, or a dataset that is no
-        run.
+        For an ``every`` that is not above 0, or a dataset that is no run.
     """
     run = drawable(dataset)
     with paper_figure(PAGE, 3.9) as figure:
         grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 1.15], height_ratios=[1.5, 1.0, 1.0])
         path(run, every, ax=figure.add_subplot(grid[:, 0]), colorbar=False)
         top = figure.add_subplot(grid[0, 1])
-        kymograph(run, ax=top)
+        kymograph(run, origin="front" if _has_front(run) else "material", ax=top)
         top.set_xlabel("")
         series = [figure.add_subplot(grid[row, 1], sharex=top) for row in (1, 2)]
         for panel, quantity in zip(series, ("tension", "speed"), strict=True):
@@ -52,6 +53,10 @@ def summary(dataset: xr.Dataset, every: float | None = None) -> Figure:
         figure.align_ylabels([top, *series])
         figure.suptitle(describe(run), x=0.01, ha="left")
     return figure
+
+
+def _has_front(run: xr.Dataset) -> bool:
+    return bool(np.isfinite(front_position(run).values).all())
 
 
 def describe(run: xr.Dataset) -> str:

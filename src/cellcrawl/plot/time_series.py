@@ -64,7 +64,8 @@ def time_series(
 def draw_series(ax: Axes, run: xr.Dataset, quantity: str) -> None:
     """Draw one quantity over time, with its label."""
     times = run["time"].values
-    ax.plot(times, _values(run, quantity).values, color=_COLOURS[quantity])
+    marker = "." if times.size == 1 else ""
+    ax.plot(times, _values(run, quantity).values, marker=marker, color=_COLOURS[quantity])
     ax.set_ylabel("\n".join(SERIES_LABELS[quantity]))
     if times[-1] > times[0]:
         ax.set_xlim(float(times[0]), float(times[-1]))
