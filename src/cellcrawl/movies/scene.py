@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from matplotlib.text import Text
 
-from cellcrawl.plot.edge import round_length, segments
+from cellcrawl.plot.edge import rim, round_length, segments
 from cellcrawl.plot.scales import SCALES, Limits, extend_for, norm_for, ticks_for
 from cellcrawl.plot.style import BODY, INK, STYLE, TRACK
 
@@ -95,16 +95,26 @@ class Scene:
         )
         self._ax.add_collection(self._grid, autolim=False)
         self._ax.add_patch(self._body)
+        self._rim = rim(np.zeros((3, 2)), self._field, 2.2, 3)
+        self._ax.add_patch(self._rim)
         self._ax.add_collection(self._edge, autolim=False)
         self._clock = _clock(strip)
         self._stride = self._thinning(size[0])
         pieces = len(range(0, self._points.shape[1], self._stride))
         self._edge.set_segments(list(np.zeros((pieces, 3, 2))))
-        self._moving = [self._grid, self._body, self._line, self._edge, self._dot, self._clock]
+        self._moving = [
+            self._grid,
+            self._body,
+            self._line,
+            self._rim,
+            self._edge,
+            self._dot,
+            self._clock,
+        ]
         for artist in self._moving:
             artist.set_animated(True)
-        _scale_bar(strip, float(self._reach[0]))
-        self._add_colour_bar(figure, values, norm)
+        free_from = _scale_bar(strip, float(self._reach[0]))
+        self._add_colour_bar(figure, values, norm, free_from)
         canvas.draw()
         self._background = canvas.copy_from_bbox(figure.bbox)
 
@@ -129,7 +139,9 @@ class Scene:
         pixels_a_node = self._longest * per_unit / self._points.shape[1]
         return max(1, round(float(_PIXELS_A_PIECE / pixels_a_node)))
 
-    def _add_colour_bar(self, figure: Figure, values: np.ndarray, norm: Normalize) -> None:
+    def _add_colour_bar(
+        self, figure: Figure, values: np.ndarray, norm: Normalize, free_from: float
+    ) -> None:
         scale = SCALES[self._field]
         box = figure.add_axes((0.66, 0.52 * _STRIP, 0.31, 0.2 * _STRIP))
         bar = figure.colorbar(
@@ -139,8 +151,11 @@ class Scene:
         if ticks is not None:
             bar.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks])
             box.minorticks_off()
-        label = f"{scale.name} {scale.symbol}"
-        box.text(-0.03, 0.5, label, transform=box.transAxes, ha="right", va="center", size=8.5)
+        label = box.text(
+            -0.03, 0.5, scale.label, transform=box.transAxes, ha="right", va="center", size=8.5
+        )
+        if label.get_window_extent().x0 < 1.03 * free_from:
+            label.set_text(scale.short_label)
 
     def draw(self, frame: int) -> np.ndarray:
         """Return the picture of a frame, shape (height, width, 4), 8 bits each.
@@ -154,6 +169,7 @@ class Scene:
             np.copyto(np.asarray(path.vertices), piece)  # far quicker than new paths
         self._edge.set_array(self._values[frame, :: self._stride])
         self._body.set_xy(points)
+        self._rim.set_xy(points)
         past = self._track[: record + 1] - camera
         self._line.set_data(past[:, 0], past[:, 1])
         self._dot.set_data(past[-1:, 0], past[-1:, 1])
@@ -186,12 +202,17 @@ def _clock(ax: Axes) -> Text:
     return ax.text(after, _MIDDLE, "", transform=ax.transAxes, va="center_baseline", size=10)
 
 
-def _scale_bar(ax: Axes, reach: float) -> None:
-    """Draw a bar of a round length on the strip, which is as wide as the view, 2 ``reach``."""
+def _scale_bar(ax: Axes, reach: float) -> float:
+    """Draw a bar of a round length on the strip, which is as wide as the view, 2 ``reach``.
+
+    Returns the pixel at which its text ends.
+    """
     size = round_length(0.35 * reach)
-    low, high = 0.22, 0.22 + size / (2.0 * reach)
+    low, high = 0.2, 0.2 + size / (2.0 * reach)
     ax.plot([low, high], [_MIDDLE, _MIDDLE], color=INK, lw=1.6, transform=ax.transAxes)
-    ax.text(high + 0.015, _MIDDLE, f"{size:g} $R_0$", transform=ax.transAxes, va="center", size=8.5)
+    label = f"{size:g} $R_0$"
+    text = ax.text(high + 0.015, _MIDDLE, label, transform=ax.transAxes, va="center", size=8.5)
+    return float(text.get_window_extent().x1)
 
 
 def _digits(times: np.ndarray) -> int:

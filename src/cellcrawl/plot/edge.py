@@ -15,7 +15,7 @@ from matplotlib.patches import Polygon
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar  # type: ignore[import-untyped]
 
 from cellcrawl.plot.scales import SCALES, extend_for, ticks_for
-from cellcrawl.plot.style import BODY, INK, figure_of
+from cellcrawl.plot.style import BODY, INK, RIM, figure_of
 
 
 def segments(points: np.ndarray) -> np.ndarray:
@@ -45,7 +45,8 @@ def draw_cell(
     zorder: float = 2.0,
 ) -> LineCollection:
     """Draw one cell: a pale body, and its edge coloured by ``values``, shape (node,)."""
-    ax.add_patch(Polygon(points, facecolor=BODY, edgecolor="none", alpha=0.7, zorder=zorder - 0.5))
+    ax.add_patch(Polygon(points, facecolor=BODY, alpha=0.7, linewidth=0.0, zorder=zorder - 0.5))
+    ax.add_patch(rim(points, field, linewidth, zorder))
     edge = LineCollection(
         list(segments(points)),
         array=values,
@@ -58,6 +59,18 @@ def draw_cell(
     )
     ax.add_collection(edge, autolim=False)
     return edge
+
+
+def rim(points: np.ndarray, field: str, linewidth: float, zorder: float) -> Polygon:
+    """Return a grey line just wider than the edge, where its colours may be as light as paper."""
+    return Polygon(
+        points,
+        fill=False,
+        edgecolor=RIM,
+        linewidth=linewidth + 0.9 if SCALES[field].reaches_white else 0.0,
+        joinstyle="round",
+        zorder=zorder,
+    )
 
 
 def draw_velocity(ax: Axes, centre: np.ndarray, velocity: np.ndarray, per_speed: float) -> None:

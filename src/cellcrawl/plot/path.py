@@ -81,7 +81,7 @@ def path(
             )
         scale_bar(axes)
         axes.annotate(
-            rf"$\Delta t$ = {step:.4g}",
+            _caption(run, step),
             (1.0, 0.0),
             xytext=(0.0, -3.0),
             xycoords="axes fraction",
@@ -130,11 +130,23 @@ def _contours(dataset: xr.Dataset, every: float) -> list[int]:
         )
     chosen = first + every * np.arange(int((last - first) / every * (1.0 + 1e-9)) + 1)
     records = [record_at(dataset, min(time, last)) for time in chosen]
-    if dataset.attrs.get("status", "completed") != "completed":
+    if _ended_early(dataset):
         if len(records) > 1 and last - chosen[-1] < _NEAREST * every:
             records.pop()
         records.append(times.size - 1)
     return list(dict.fromkeys(records))
+
+
+def _caption(dataset: xr.Dataset, every: float) -> str:
+    """Say how far apart the contours are, and when the last one is if the run ended early."""
+    apart = rf"$\Delta t$ = {every:.4g}"
+    if not _ended_early(dataset):
+        return apart
+    return f"{apart}, end at $t$ = {float(dataset['time'].values[-1]):.4g}"
+
+
+def _ended_early(dataset: xr.Dataset) -> bool:
+    return bool(dataset.attrs.get("status", "completed") != "completed")
 
 
 def _box(clouds: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:

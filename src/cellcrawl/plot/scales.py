@@ -36,6 +36,11 @@ class Scale(NamedTuple):
         return f"{self.name} {self.symbol}" + (f" ({self.unit})" if self.unit else "")
 
     @property
+    def reaches_white(self) -> bool:
+        """Whether some of the colours would be lost on paper."""
+        return self.colormap not in ("viridis", "cividis")
+
+    @property
     def short_label(self) -> str:
         """The symbol with the unit."""
         return self.symbol + (f" ({self.unit})" if self.unit else "")

@@ -20,6 +20,7 @@ PAGE: Final = 7.0
 INK: Final = "#222222"
 TRACK: Final = "#b5338a"
 BODY: Final = "#f1f1f1"
+RIM: Final = "#8c8c8c"
 
 STYLE: Final[Any] = {
     "font.family": "sans-serif",
