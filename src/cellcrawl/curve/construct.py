@@ -39,13 +39,13 @@ def from_path(path: np.ndarray, nodes: int) -> tuple[Curve, np.ndarray]:
     if not speed.min() > 1e-9 * speed.mean():
         raise InputError("the path stops or turns back on itself: its points must keep moving on")
     mean_speed = float(speed.mean())
-    ahead = fourier.TrigonometricSeries(fourier.integral(speed - mean_speed, 2.0 * math.pi))
-    pace = fourier.TrigonometricSeries(speed)
+    lead = fourier.integral(speed - mean_speed, 2.0 * math.pi)
+    ahead = fourier.TrigonometricSeries(lead, 1e-16 * mean_speed)
+    pace = fourier.TrigonometricSeries(speed, 1e-8 * mean_speed)
     target = 2.0 * math.pi * np.arange(nodes) / nodes
     parameter = np.interp(
         mean_speed * np.append(target, 2.0 * math.pi),
-        mean_speed * np.linspace(0.0, 2.0 * math.pi, path.size + 1)
-        + np.append(fourier.integral(speed - mean_speed, 2.0 * math.pi), 0.0),
+        mean_speed * np.linspace(0.0, 2.0 * math.pi, path.size + 1) + np.append(lead, 0.0),
         np.linspace(0.0, 2.0 * math.pi, path.size + 1),
     )[:-1]
     for _ in range(20):
@@ -55,7 +55,7 @@ def from_path(path: np.ndarray, nodes: int) -> tuple[Curve, np.ndarray]:
             break
     if not np.max(np.abs(miss)) < 1e-9:
         raise InputError("the path has corners too sharp to follow: smooth it or give more samples")
-    series = fourier.TrigonometricSeries(path)
+    series = fourier.TrigonometricSeries(path - path.mean(), 1e-16 * mean_speed)
     theta = np.unwrap(np.angle(series(parameter, order=1)))
     start = complex(path[0])
     curve = Curve(theta, 2.0 * math.pi * mean_speed, np.array([start.real, start.imag]))
@@ -141,7 +141,7 @@ def simple_polygon(xy: Any) -> np.ndarray:
     """Return the vertices of ``xy`` counter-clockwise without repeats, or raise `InputError`."""
     vertices = real_array("outline", xy, (None, 2))
     if len(vertices):
-        keep = np.any(vertices != np.roll(vertices, 1, axis=0), axis=1)
+        keep = np.any(vertices != np.roll(vertices, -1, axis=0), axis=1)
         vertices = vertices[keep]
     if len(vertices) < 3:
         raise InputError(f"the outline has {len(vertices)} distinct vertices: it needs at least 3")

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from cellcrawl.curve import fourier
+from cellcrawl.errors import InputError
 from cellcrawl.validation import real_array, real_number, whole_number
 
 FEWEST_NODES = 16
@@ -82,10 +83,15 @@ class Curve:
     @cached_property
     def points(self) -> np.ndarray:
         """Positions of the nodes, shape (nodes, 2); a closure error is spread evenly."""
+        positions: np.ndarray = self._arms + self.origin
+        return positions
+
+    @cached_property
+    def _arms(self) -> np.ndarray:
+        """Positions relative to node 0, as exact far from (0, 0) as near it."""
         tangent = np.exp(1j * self.theta)
         path = fourier.integral(tangent - tangent.mean(), self.length)
-        positions: np.ndarray = np.column_stack([path.real, path.imag]) + self.origin
-        return positions
+        return np.column_stack([path.real, path.imag])
 
     @cached_property
     def normals(self) -> np.ndarray:
@@ -95,14 +101,12 @@ class Curve:
     @cached_property
     def area(self) -> float:
         """Enclosed area, positive for a counter-clockwise curve."""
-        arms = self.points - self.origin
-        return float(0.5 * self.spacing * np.sum(arms * self.normals))
+        return float(0.5 * self.spacing * np.sum(self._arms * self.normals))
 
     @cached_property
     def centroid(self) -> np.ndarray:
         """Centroid of the enclosed area, shape (2,)."""
-        arms = self.points - self.origin
-        moments: np.ndarray = self.spacing * np.sum(arms**2 * self.normals, axis=0)
+        moments: np.ndarray = self.spacing * np.sum(self._arms**2 * self.normals, axis=0)
         center: np.ndarray = moments / (2.0 * self.area) + self.origin
         return center
 

@@ -49,12 +49,13 @@ def resample(samples: np.ndarray, count: int) -> np.ndarray:
 class TrigonometricSeries:
     """The trigonometric interpolant of periodic samples, to be evaluated anywhere.
 
-    Modes below ``1e-16`` of the largest are dropped.
+    Modes of an amplitude up to ``floor`` are dropped: where samples resolve the function well, most
+    of its modes are rounding.
     """
 
-    def __init__(self, samples: np.ndarray) -> None:
+    def __init__(self, samples: np.ndarray, floor: float = 0.0) -> None:
         amplitudes = np.fft.fft(samples) / samples.size
-        kept = np.abs(amplitudes) > 1e-16 * np.abs(amplitudes).max(initial=0.0)
+        kept = np.abs(amplitudes) > floor
         self._k = wavenumbers(samples.size)[kept]
         self._amplitudes = amplitudes[kept]
 
