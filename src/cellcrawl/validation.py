@@ -64,7 +64,7 @@ def real_array(name: str, value: Any, shape: tuple[int | None, ...] | None) -> n
     ):
         raise InputError(f"{name} has shape {array.shape}: it must have {wanted}")
     bad = np.argwhere(~np.isfinite(array))
-    if bad.size:
+    if len(bad):
         where = tuple(int(i) for i in bad[0])
         place = f" at index {where}" if where else ""
         raise InputError(f"{name} is not finite{place}: {array[where]}")

@@ -126,7 +126,7 @@ def test_nodes_are_equally_spaced_on_the_shape(case):
 def test_centroid_moves_and_turns_with_the_curve(case, x, y, angle):
     curve = case[1]
     moved = curve.moved([x, y])
-    np.testing.assert_allclose(moved.centroid, curve.centroid + [x, y], atol=1e-12)
+    np.testing.assert_allclose(moved.centroid, np.add(curve.centroid, (x, y)), atol=1e-12)
     assert moved.area == pytest.approx(curve.area, rel=1e-12)
     c, s = math.cos(angle), math.sin(angle)
     turn = np.array([[c, -s], [s, c]])

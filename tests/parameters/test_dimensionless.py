@@ -131,7 +131,7 @@ def test_numbers_may_come_from_numpy():
     ["25", None, True, np.True_, 25j, [25], np.array([25.0]), {}, b"25", np.timedelta64(25, "s")],
 )
 def test_wrong_types_are_named(value):
-    with pytest.raises(cc.InputError, match="^r_on = .* has the wrong type: .* from 1 to 200$"):
+    with pytest.raises(cc.InputError, match=r"^r_on = .* has the wrong type: .* from 1 to 200$"):
         cc.Parameters(r_on=value)
 
 
@@ -139,7 +139,7 @@ def test_wrong_types_are_named(value):
     "value", [math.nan, math.inf, -math.inf, pytest.param(-(10**5000), id="digits"), -0.1, 1e9]
 )
 def test_impossible_numbers_are_named(value):
-    with pytest.raises(cc.InputError, match="^r_on .*from 1 to 200$"):
+    with pytest.raises(cc.InputError, match=r"^r_on .*from 1 to 200$"):
         cc.Parameters(r_on=value)
 
 
@@ -174,10 +174,10 @@ def test_unreadable_files_are_one_line(tmp_path):
     binary = tmp_path / "binary.toml"
     binary.write_bytes(b"\xff\xfe\x00")
     for path in (binary, tmp_path, tmp_path / "missing.toml"):
-        with pytest.raises(cc.InputError, match="TOML|cannot read"):
+        with pytest.raises(cc.InputError, match=r"TOML|cannot read"):
             cc.Parameters.from_toml(path)
 
 
 def test_unwritable_path_is_named(tmp_path):
-    with pytest.raises(StorageError, match="cannot write .*missing"):
+    with pytest.raises(StorageError, match=r"cannot write .*missing"):
         cc.Parameters().to_toml(tmp_path / "missing" / "p.toml")

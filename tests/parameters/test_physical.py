@@ -83,7 +83,9 @@ def test_ends_of_a_range_survive_the_round_trip():
 
 
 def test_scales_of_another_epsilon_are_refused():
-    with pytest.raises(cc.InputError, match="epsilon = 0.01, the scales 0.001.*velocity=") as error:
+    with pytest.raises(
+        cc.InputError, match=r"epsilon = 0.01, the scales 0.001.*velocity="
+    ) as error:
         cell.from_dimensionless(cc.Parameters(epsilon=0.01), cc.Scales())
     advised = float(str(error.value).split("retrograde_velocity=")[1])
     cell.from_dimensionless(cc.Parameters(epsilon=0.01), cc.Scales(retrograde_velocity=advised))
@@ -124,7 +126,7 @@ def test_dimensionless_numbers_follow_the_papers_definitions():
     p = c.dimensionless()
     assert p.r_on == pytest.approx(4.0 / 0.2)
     assert p.zeta_1 == pytest.approx(9e4 / 150.0)
-    assert p.D == pytest.approx(1e-12 / (0.2 * 8e-6**2))
+    assert pytest.approx(1e-12 / (0.2 * 8e-6**2)) == p.D
     assert p.epsilon == pytest.approx(v_beta / (0.2 * 8e-6))
     assert p.h == pytest.approx(2e-7 / 8e-6)
     assert p.sigma_c == pytest.approx(3e-5 / (150.0 * v_beta))

@@ -63,7 +63,7 @@ def test_dataset_in_si_is_not_scaled_again(run):
 
 
 def test_scales_of_another_cell_are_refused_with_the_velocity_that_fits(run):
-    with pytest.raises(cc.InputError, match="this run has epsilon = 0.001") as error:
+    with pytest.raises(cc.InputError, match=r"this run has epsilon = 0.001") as error:
         cc.Scales(time=20.0).dataset(run)
     advised = float(str(error.value).split("retrograde_velocity=")[1])
     cc.Scales(time=20.0, retrograde_velocity=advised).dataset(run)

@@ -1,4 +1,5 @@
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -71,7 +72,7 @@ def schedules(draw):
 def test_values_never_leave_the_range_of_their_neighbours(schedule, part, which):
     # linear interpolation in floating point can overshoot its ends by a rounding
     for name, points in schedule.to_dict().items():
-        pairs = list(zip(points, points[1:], strict=False)) or [(points[0], points[0])]
+        pairs = list(pairwise(points)) or [(points[0], points[0])]
         (t0, v0), (t1, v1) = pairs[which % len(pairs)]
         for t in (t0 + part * (t1 - t0), t0, t1):
             value = getattr(schedule.before(P, t), name)

@@ -15,6 +15,7 @@ from cellcrawl.errors import InputError
 from cellcrawl.validation import real_array, real_number, whole_number
 
 LARGEST = 1e12  # coordinates of an outline
+_AREA_LOST = 0.01  # share of the area at which nodes are too few to show a shape
 
 
 def from_path(path: np.ndarray, nodes: int) -> tuple[Curve, np.ndarray]:
@@ -33,9 +34,16 @@ def from_path(path: np.ndarray, nodes: int) -> tuple[Curve, np.ndarray]:
         Spectrally accurate.
     array, shape (nodes,)
         The parameter, from 0 to 2 pi, at each node.
+
+    Raises
+    ------
+    InputError
+        For a path that stops, turns back, winds otherwise than once counter-clockwise, or has more
+        detail than the nodes can show.
     """
     whole_number("nodes", nodes, FEWEST_NODES)
-    speed = np.abs(fourier.derivative(path, 2.0 * math.pi))
+    velocity = fourier.derivative(path, 2.0 * math.pi)
+    speed = np.abs(velocity)
     if not speed.min() > 1e-9 * speed.mean():
         raise InputError("the path stops or turns back on itself: its points must keep moving on")
     mean_speed = float(speed.mean())
@@ -64,7 +72,14 @@ def from_path(path: np.ndarray, nodes: int) -> tuple[Curve, np.ndarray]:
             "the path is not a simple counter-clockwise curve: its tangent turns "
             f"{curve.turning_number} times, not once"
         )
-    return curve.closed(), parameter
+    curve = curve.closed()
+    area = math.pi * float(np.mean((np.conj(path - path.mean()) * velocity).imag))
+    if not abs(curve.area - area) <= _AREA_LOST * area:
+        raise InputError(
+            f"{nodes} nodes are too few for this shape: they show an area of {curve.area:.3g} "
+            f"where it has {area:.3g}; give more nodes or a rounder shape"
+        )
+    return curve, parameter
 
 
 def from_polar(radius: Callable[[np.ndarray], Any], nodes: int, samples: int = 4096) -> Curve:
