@@ -1,1 +1,75 @@
+"""Simulate how single cells crawl.
 
+A deformable cell edge, force-sensitive adhesions that stick and slip, and one membrane tension that
+ties the edge together (Chen, Saintillan & Rangamani, PRX Life 1, 023007, 2023).
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from cellcrawl import linear as linear
+    from cellcrawl import observables as observables
+    from cellcrawl import plot as plot
+    from cellcrawl.curve import Curve as Curve
+    from cellcrawl.errors import CellcrawlError as CellcrawlError
+    from cellcrawl.errors import InputError as InputError
+    from cellcrawl.errors import StorageError as StorageError
+    from cellcrawl.movies import movie as movie
+    from cellcrawl.parameters import Parameters as Parameters
+    from cellcrawl.parameters import PhysicalParameters as PhysicalParameters
+    from cellcrawl.parameters import Scales as Scales
+    from cellcrawl.parameters import Schedule as Schedule
+    from cellcrawl.simulation import FromRun as FromRun
+    from cellcrawl.simulation import open_run as open_run
+    from cellcrawl.simulation import resume as resume
+    from cellcrawl.simulation import simulate as simulate
+    from cellcrawl.starts import CellState as CellState
+    from cellcrawl.starts import Eigenmode as Eigenmode
+    from cellcrawl.starts import FromOutline as FromOutline
+    from cellcrawl.starts import PerturbedCircle as PerturbedCircle
+    from cellcrawl.starts import RandomPerturbation as RandomPerturbation
+
+# Where each public name lives; loaded on first use, so that `import cellcrawl` stays light.
+_HOMES = {
+    "CellState": "starts",
+    "CellcrawlError": "errors",
+    "Curve": "curve",
+    "Eigenmode": "starts",
+    "FromOutline": "starts",
+    "FromRun": "simulation",
+    "InputError": "errors",
+    "Parameters": "parameters",
+    "PerturbedCircle": "starts",
+    "PhysicalParameters": "parameters",
+    "RandomPerturbation": "starts",
+    "Scales": "parameters",
+    "Schedule": "parameters",
+    "StorageError": "errors",
+    "movie": "movies",
+    "open_run": "simulation",
+    "resume": "simulation",
+    "simulate": "simulation",
+}
+_MODULES = ("linear", "observables", "plot")
+
+__all__ = [*_HOMES, *_MODULES, "__version__"]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOMES:
+        value = getattr(importlib.import_module(f"cellcrawl.{_HOMES[name]}"), name)
+    elif name in _MODULES:
+        value = importlib.import_module(f"cellcrawl.{name}")
+    elif name == "__version__":
+        value = importlib.import_module("importlib.metadata").version("cellcrawl")
+    else:
+        raise AttributeError(f"module 'cellcrawl' has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeVar
+from typing import TypeVar, cast
 
 import numba
 
@@ -15,19 +15,19 @@ def kernel(function: F) -> F:
 
     NaN and infinity keep their meaning, so a kernel may test for them.
     """
-    compiled: F = numba.njit(cache=True, error_model="numpy", fastmath={"contract"})(function)
-    return compiled
+    compiled = numba.njit(cache=True, error_model="numpy", fastmath={"contract"})(function)
+    return cast(F, compiled)
 
 
 def inlined_kernel(function: F) -> F:
     """Like `kernel`, for a few lines that are inlined wherever they are called."""
-    compiled: F = numba.njit(
-        cache=True, error_model="numpy", fastmath={"contract"}, forceinline=True
-    )(function)
-    return compiled
+    compiled = numba.njit(cache=True, error_model="numpy", fastmath={"contract"}, forceinline=True)(
+        function
+    )
+    return cast(F, compiled)
 
 
 def exact_kernel(function: F) -> F:
     """Compile with strict IEEE arithmetic, for predicates whose sign must be right."""
-    compiled: F = numba.njit(cache=True, error_model="numpy")(function)
-    return compiled
+    compiled = numba.njit(cache=True, error_model="numpy")(function)
+    return cast(F, compiled)

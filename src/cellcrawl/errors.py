@@ -22,10 +22,15 @@ class MissingExtraError(CellcrawlError, ImportError):
     """An optional dependency is needed; the message says which extra installs it."""
 
 
-def nearest_name(name: str, known: Iterable[str]) -> str:
-    """Return `` (did you mean 'x'?)`` for a misspelt name, or the list of what exists."""
+def nearest_name(name: object, known: Iterable[str]) -> str:
+    """Return ``did you mean 'x'?`` for a misspelt name, or the list of what exists.
+
+    Case does not count: ``d`` is nearest to ``D``.
+    """
     known = sorted(known)
-    close = difflib.get_close_matches(str(name), known, n=1, cutoff=0.5)
+    plain = {word.casefold(): word for word in known}
+    text = name.casefold() if isinstance(name, str) else ""
+    close = [plain[word] for word in difflib.get_close_matches(text[:80], plain, n=1, cutoff=0.5)]
     if close:
         return f"did you mean {close[0]!r}?"
     return f"known names: {', '.join(known)}"

@@ -11,12 +11,14 @@ import numpy as np
 from cellcrawl.errors import InputError, nearest_name
 
 
-def real_number(name: str, value: Any, low: float, high: float, *, open_low: bool = False) -> float:
-    """Return ``value`` as a float within [low, high] (or (low, high]), or raise `InputError`."""
-    allowed = f"a number {_interval(low, high, open_low)}"
+def real_number(
+    name: str, value: Any, low: float, high: float, *, open_low: bool = False, unit: str = ""
+) -> float:
+    """Return ``value`` as a finite float from low (or above it) to high, or raise `InputError`."""
+    allowed = f"a number {_interval(low, high, open_low)} {unit}".rstrip()
     number = _as_float(name, value, allowed)
-    if math.isnan(number) or not (low <= number <= high) or (open_low and number == low):
-        raise InputError(f"{name} = {_shown(value)} is out of range: it must be {allowed}")
+    if not (math.isfinite(number) and low <= number <= high) or (open_low and number == low):
+        raise InputError(f"{name} = {shown(value)} is out of range: it must be {allowed}")
     return number
 
 
@@ -25,13 +27,12 @@ def whole_number(name: str, value: Any, low: int, high: int | None = None) -> in
     allowed = f"a whole number of at least {low}"
     if high is not None:
         allowed = f"a whole number from {low} to {high}"
-    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, float, np.number)):
-        raise InputError(f"{name} = {_shown(value)} has the wrong type: it must be {allowed}")
-    if isinstance(value, (complex, np.complexfloating)) or not math.isfinite(value):
-        raise InputError(f"{name} = {_shown(value)} is out of range: it must be {allowed}")
-    if int(value) != value or value < low or (high is not None and value > high):
-        raise InputError(f"{name} = {_shown(value)} is out of range: it must be {allowed}")
-    return int(value)
+    if not _is_real(value):
+        raise InputError(f"{name} = {shown(value)} has the wrong type: it must be {allowed}")
+    whole = int(value) if isinstance(value, (int, np.integer)) or math.isfinite(value) else None
+    if whole is None or whole != value or whole < low or (high is not None and whole > high):
+        raise InputError(f"{name} = {shown(value)} is out of range: it must be {allowed}")
+    return whole
 
 
 def one_of(name: str, value: Any, allowed: Iterable[str]) -> str:
@@ -40,25 +41,33 @@ def one_of(name: str, value: Any, allowed: Iterable[str]) -> str:
     if not isinstance(value, str) or value not in words:
         hint = f" ({nearest_name(value, words)})" if isinstance(value, str) else ""
         choices = ", ".join(repr(word) for word in words)
-        raise InputError(f"{name} = {_shown(value)} is not known: it must be one of {choices}{hint}")
-    return value
+        raise InputError(f"{name} = {shown(value)} is not known: it must be one of {choices}{hint}")
+    return str(value)
 
 
-def real_array(name: str, value: Any, shape: tuple[int | None, ...]) -> np.ndarray:
-    """Return ``value`` as a finite float array of ``shape`` (None: any), or raise `InputError`."""
-    wanted = "(" + ", ".join("any" if size is None else str(size) for size in shape) + ")"
+def real_array(name: str, value: Any, shape: tuple[int | None, ...] | None) -> np.ndarray:
+    """Return a finite float array of ``shape`` (None: any size, or any shape), or raise."""
+    wanted = "any shape"
+    if shape is not None:
+        sizes = ("any" if size is None else str(size) for size in shape)
+        wanted = f"shape ({', '.join(sizes)})"
     try:
-        array = np.array(value, dtype=float)
+        given = np.asarray(value)
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"{name} must be an array of numbers of shape {wanted}") from None
-    if array.ndim != len(shape) or any(
-        want is not None and have != want for have, want in zip(array.shape, shape, strict=True)
+        given = np.asarray(None)
+    if given.dtype.kind not in "iuf":
+        raise InputError(f"{name} must be an array of numbers of {wanted}")
+    array = np.array(given, dtype=float)
+    if shape is not None and (
+        array.ndim != len(shape)
+        or any(want not in (None, have) for have, want in zip(array.shape, shape, strict=True))
     ):
-        raise InputError(f"{name} has shape {array.shape}: it must have shape {wanted}")
+        raise InputError(f"{name} has shape {array.shape}: it must have {wanted}")
     bad = np.argwhere(~np.isfinite(array))
-    if bad.size:
+    if len(bad):
         where = tuple(int(i) for i in bad[0])
-        raise InputError(f"{name} is not finite at index {where}: {array[where]}")
+        place = f" at index {where}" if where else ""
+        raise InputError(f"{name} is not finite{place}: {array[where]}")
     return array
 
 
@@ -67,20 +76,36 @@ def known_names(what: str, given: Iterable[Any], known: Iterable[str]) -> None:
     known = list(known)
     for name in given:
         if name not in known:
-            raise InputError(f"{what} has no {name!r}: {nearest_name(name, known)}")
+            raise InputError(f"{what} has no {shown(name)}: {nearest_name(name, known)}")
 
 
 def table(what: str, value: Any) -> Mapping[str, Any]:
     """Return ``value`` if it is a mapping, or raise `InputError`."""
     if not isinstance(value, Mapping):
-        raise InputError(f"{what} must be a table of names and values, not {_shown(value)}")
+        raise InputError(f"{what} must be a table of names and values, not {shown(value)}")
     return value
 
 
+def shown(value: Any) -> str:
+    """Return ``value`` as short text on one line, whatever it is."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    try:
+        text = " ".join(repr(value).split())
+    except Exception:  # a whole number of thousands of digits, or a broken __repr__
+        text = f"<{type(value).__name__}>"
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _is_real(value: Any) -> bool:
+    if isinstance(value, (bool, np.bool_, np.timedelta64)):
+        return False
+    return isinstance(value, (int, float, np.integer, np.floating))
+
+
 def _as_float(name: str, value: Any, allowed: str) -> float:
-    numeric = isinstance(value, (int, float, np.integer, np.floating))
-    if not numeric or isinstance(value, (bool, np.bool_)):
-        raise InputError(f"{name} = {_shown(value)} has the wrong type: it must be {allowed}")
+    if not _is_real(value):
+        raise InputError(f"{name} = {shown(value)} has the wrong type: it must be {allowed}")
     try:
         return float(value)
     except OverflowError:
@@ -89,12 +114,5 @@ def _as_float(name: str, value: Any, allowed: str) -> float:
 
 def _interval(low: float, high: float, open_low: bool) -> str:
     if math.isinf(high):
-        return f"above {low:g}, finite" if open_low else f"of at least {low:g}"
+        return f"{'above' if open_low else 'of at least'} {low:g}, finite"
     return f"above {low:g}, up to {high:g}" if open_low else f"from {low:g} to {high:g}"
-
-
-def _shown(value: Any) -> str:
-    if isinstance(value, np.generic):
-        value = value.item()
-    text = repr(value).replace("\n", " ")
-    return text if len(text) <= 60 else text[:57] + "..."

@@ -1,6 +1,12 @@
 """The cell edge: a closed curve with equally spaced nodes."""
 
-from cellcrawl.curve.construct import from_path, from_polar, from_polygon, simple_polygon
+from cellcrawl.curve.construct import (
+    from_path,
+    from_polar,
+    from_polygon,
+    polygon_area,
+    simple_polygon,
+)
 from cellcrawl.curve.crossing import Crossing, first_crossing
 from cellcrawl.curve.equal_arclength import Curve
 
@@ -11,5 +17,6 @@ __all__ = [
     "from_path",
     "from_polar",
     "from_polygon",
+    "polygon_area",
     "simple_polygon",
 ]

@@ -14,6 +14,9 @@ from cellcrawl.curve.equal_arclength import FEWEST_NODES, Curve
 from cellcrawl.errors import InputError
 from cellcrawl.validation import real_array, real_number, whole_number
 
+LARGEST = 1e12  # coordinates of an outline
+_AREA_LOST = 0.01  # share of the area at which nodes are too few to show a shape
+
 
 def from_path(path: np.ndarray, nodes: int) -> tuple[Curve, np.ndarray]:
     """Curve through a smooth closed path, and the path's parameter at each node.
@@ -31,34 +34,52 @@ def from_path(path: np.ndarray, nodes: int) -> tuple[Curve, np.ndarray]:
         Spectrally accurate.
     array, shape (nodes,)
         The parameter, from 0 to 2 pi, at each node.
+
+    Raises
+    ------
+    InputError
+        For a path that stops, turns back, winds otherwise than once counter-clockwise, or has more
+        detail than the nodes can show.
     """
     whole_number("nodes", nodes, FEWEST_NODES)
-    speed = np.abs(fourier.derivative(path, 2.0 * math.pi))
+    velocity = fourier.derivative(path, 2.0 * math.pi)
+    speed = np.abs(velocity)
     if not speed.min() > 1e-9 * speed.mean():
         raise InputError("the path stops or turns back on itself: its points must keep moving on")
     mean_speed = float(speed.mean())
-    ahead = fourier.TrigonometricSeries(fourier.integral(speed - mean_speed, 2.0 * math.pi))
-    pace = fourier.TrigonometricSeries(speed)
+    lead = fourier.integral(speed - mean_speed, 2.0 * math.pi)
+    ahead = fourier.TrigonometricSeries(lead, 1e-16 * mean_speed)
+    pace = fourier.TrigonometricSeries(speed, 1e-8 * mean_speed)
     target = 2.0 * math.pi * np.arange(nodes) / nodes
     parameter = np.interp(
         mean_speed * np.append(target, 2.0 * math.pi),
-        mean_speed * np.linspace(0.0, 2.0 * math.pi, path.size + 1)
-        + np.append(fourier.integral(speed - mean_speed, 2.0 * math.pi), 0.0),
+        mean_speed * np.linspace(0.0, 2.0 * math.pi, path.size + 1) + np.append(lead, 0.0),
         np.linspace(0.0, 2.0 * math.pi, path.size + 1),
     )[:-1]
     for _ in range(20):
         miss = parameter - target + ahead(parameter).real / mean_speed
         parameter = parameter - miss * mean_speed / pace(parameter).real
-        if np.max(np.abs(miss)) < 1e-14:
+        if np.max(np.abs(miss)) < 1e-9:  # Newton squares it
             break
-    series = fourier.TrigonometricSeries(path)
+    if not np.max(np.abs(miss)) < 1e-9:
+        raise InputError("the path has corners too sharp to follow: smooth it or give more samples")
+    series = fourier.TrigonometricSeries(path - path.mean(), 1e-16 * mean_speed)
     theta = np.unwrap(np.angle(series(parameter, order=1)))
     start = complex(path[0])
     curve = Curve(theta, 2.0 * math.pi * mean_speed, np.array([start.real, start.imag]))
     if curve.turning_number != 1:
-        raise InputError("the path is not a simple counter-clockwise curve: its tangent turns "
-                         f"{curve.turning_number} times, not once")
-    return curve.closed(), parameter
+        raise InputError(
+            "the path is not a simple counter-clockwise curve: its tangent turns "
+            f"{curve.turning_number} times, not once"
+        )
+    curve = curve.closed()
+    area = math.pi * float(np.mean((np.conj(path - path.mean()) * velocity).imag))
+    if not abs(curve.area - area) <= _AREA_LOST * area:
+        raise InputError(
+            f"{nodes} nodes are too few for this shape: they show an area of {curve.area:.3g} "
+            f"where it has {area:.3g}; give more nodes or a rounder shape"
+        )
+    return curve, parameter
 
 
 def from_polar(radius: Callable[[np.ndarray], Any], nodes: int, samples: int = 4096) -> Curve:
@@ -79,7 +100,10 @@ def from_polar(radius: Callable[[np.ndarray], Any], nodes: int, samples: int = 4
 def polar_path(radius: Callable[[np.ndarray], Any], samples: int) -> np.ndarray:
     """``R(phi) exp(i phi)`` at equal steps of phi; raises `InputError` unless R is positive."""
     angle = 2.0 * math.pi * np.arange(samples) / samples
-    values = real_array("radius", np.broadcast_to(radius(angle), angle.shape), (None,))
+    values = real_array("radius", radius(angle), None)
+    if values.shape not in ((), (samples,)):
+        raise InputError(f"the radius has shape {values.shape} for angles of shape ({samples},)")
+    values = np.broadcast_to(values, (samples,))
     if values.min() <= 0.0:
         at = angle[values.argmin()]
         raise InputError(
@@ -132,10 +156,16 @@ def simple_polygon(xy: Any) -> np.ndarray:
     """Return the vertices of ``xy`` counter-clockwise without repeats, or raise `InputError`."""
     vertices = real_array("outline", xy, (None, 2))
     if len(vertices):
-        keep = np.any(vertices != np.roll(vertices, 1, axis=0), axis=1)
+        keep = np.any(vertices != np.roll(vertices, -1, axis=0), axis=1)
         vertices = vertices[keep]
     if len(vertices) < 3:
         raise InputError(f"the outline has {len(vertices)} distinct vertices: it needs at least 3")
+    reach = np.abs(vertices).max()
+    if reach > LARGEST or reach < 1.0 / LARGEST:
+        raise InputError(
+            f"the outline reaches {reach:.3g} from the origin: give it in a unit in which it "
+            f"reaches {1.0 / LARGEST:g} to {LARGEST:g}"
+        )
     crossing = first_crossing(vertices)
     if crossing is not None:
         first, second = crossing.edges

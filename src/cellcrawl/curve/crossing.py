@@ -43,8 +43,9 @@ def first_crossing(points: np.ndarray) -> Crossing | None:
     ----------
     points : array, shape (nodes, 2)
         Vertices in order, the first not repeated. Edges that touch count as crossing, so do
-        neighbouring edges that fold back on each other. The verdict is exact for these vertices;
-        a smooth curve between them can differ by ``curvature * spacing**2 / 8``.
+        neighbouring edges that fold back on each other, and a vertex given twice. The verdict is
+        exact for these vertices; a smooth curve between them can differ by
+        ``curvature * spacing**2 / 8``.
     """
     x = np.ascontiguousarray(points[:, 0])
     y = np.ascontiguousarray(points[:, 1])
@@ -161,9 +162,18 @@ def _meeting(points: np.ndarray, i: int, j: int) -> Crossing:
     along, across = b - a, d - c
     area = along[0] * across[1] - along[1] * across[0]
     if area == 0.0:
-        u, v = 0.5, 0.5
+        u, v = _overlap(along, c - a, d - a), _overlap(across, a - c, b - c)
     else:
         u = float(np.clip(((c - a)[0] * across[1] - (c - a)[1] * across[0]) / area, 0.0, 1.0))
         v = float(np.clip(((c - a)[0] * along[1] - (c - a)[1] * along[0]) / area, 0.0, 1.0))
     x, y = a + u * along
     return Crossing((i, j), (float(x), float(y)), (i + u, j + v))
+
+
+def _overlap(along: np.ndarray, first: np.ndarray, second: np.ndarray) -> float:
+    """Middle of the part of an edge that a parallel edge covers, as a fraction of the edge."""
+    size = float(along @ along)
+    if size == 0.0:
+        return 0.0
+    ends = np.clip([first @ along / size, second @ along / size], 0.0, 1.0)
+    return float(ends.mean())

@@ -20,6 +20,7 @@ from cellcrawl.errors import InputError
 from cellcrawl.validation import real_array, real_number, whole_number
 
 FEWEST_NODES = 16
+_CLOSED = 1e-13  # closure error that rounding leaves
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,14 +77,21 @@ class Curve:
         """``kappa = d theta / ds`` at the nodes, shape (nodes,)."""
         winding = 2.0 * math.pi * np.arange(self.nodes) / self.nodes
         slope = fourier.derivative(self.theta - winding, 2.0 * math.pi)
-        return (1.0 + slope) * (2.0 * math.pi / self.length)
+        kappa: np.ndarray = (1.0 + slope) * (2.0 * math.pi / self.length)
+        return kappa
 
     @cached_property
     def points(self) -> np.ndarray:
         """Positions of the nodes, shape (nodes, 2); a closure error is spread evenly."""
+        positions: np.ndarray = self._arms + self.origin
+        return positions
+
+    @cached_property
+    def _arms(self) -> np.ndarray:
+        """Positions relative to node 0, as exact far from (0, 0) as near it."""
         tangent = np.exp(1j * self.theta)
         path = fourier.integral(tangent - tangent.mean(), self.length)
-        return np.column_stack([path.real, path.imag]) + self.origin
+        return np.column_stack([path.real, path.imag])
 
     @cached_property
     def normals(self) -> np.ndarray:
@@ -93,15 +101,14 @@ class Curve:
     @cached_property
     def area(self) -> float:
         """Enclosed area, positive for a counter-clockwise curve."""
-        arms = self.points - self.origin
-        return float(0.5 * self.spacing * np.sum(arms * self.normals))
+        return float(0.5 * self.spacing * np.sum(self._arms * self.normals))
 
     @cached_property
     def centroid(self) -> np.ndarray:
         """Centroid of the enclosed area, shape (2,)."""
-        arms = self.points - self.origin
-        moments: np.ndarray = self.spacing * np.sum(arms**2 * self.normals, axis=0)
-        return moments / (2.0 * self.area) + self.origin
+        moments: np.ndarray = self.spacing * np.sum(self._arms**2 * self.normals, axis=0)
+        center: np.ndarray = moments / (2.0 * self.area) + self.origin
+        return center
 
     @property
     def circularity(self) -> float:
@@ -120,7 +127,13 @@ class Curve:
         return round(float(np.sum(np.angle(np.exp(1j * steps)))) / (2.0 * math.pi))
 
     def closed(self) -> Curve:
-        """Return the curve projected to close: the least change of theta (in the mean square)."""
+        """Return the curve projected to close: the least change of theta (in the mean square).
+
+        Raises
+        ------
+        InputError
+            For a curve too far from closing, such as a straight line.
+        """
         theta = self.theta.copy()
         for _ in range(20):
             cosine, sine = np.cos(theta), np.sin(theta)
@@ -129,9 +142,17 @@ class Curve:
                 break
             cross = np.mean(sine * cosine)
             slope = np.array([[-np.mean(sine * sine), -cross], [cross, np.mean(cosine * cosine)]])
+            if abs(np.linalg.det(slope)) < 1e-12:
+                break  # a straight line
             a, b = np.linalg.solve(slope, -gap)
             theta += a * sine + b * cosine
-        return dataclasses.replace(self, theta=theta)
+        result = dataclasses.replace(self, theta=theta)
+        if result.closure_error > _CLOSED:
+            raise InputError(
+                f"the curve does not close: its ends are {self.closure_error:.3g} of its length "
+                "apart and no small change of its tangent brings them together"
+            )
+        return result
 
     def moved(self, shift: Any) -> Curve:
         """Return the curve translated by ``shift``, shape (2,)."""

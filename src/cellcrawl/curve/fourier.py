@@ -18,7 +18,7 @@ def derivative(samples: np.ndarray, period: float) -> np.ndarray:
     if samples.size % 2 == 0:
         k[samples.size // 2] = 0.0  # the sawtooth has no derivative on its own nodes
     result = np.fft.ifft(np.fft.fft(samples) * (2j * math.pi / period) * k)
-    return result if np.iscomplexobj(samples) else result.real
+    return np.asarray(result if np.iscomplexobj(samples) else result.real)
 
 
 def integral(samples: np.ndarray, period: float) -> np.ndarray:
@@ -31,7 +31,7 @@ def integral(samples: np.ndarray, period: float) -> np.ndarray:
     spectrum[1:] /= (2j * math.pi / period) * k[1:]
     result = np.fft.ifft(spectrum)
     result = result - result[0]
-    return result if np.iscomplexobj(samples) else result.real
+    return np.asarray(result if np.iscomplexobj(samples) else result.real)
 
 
 def resample(samples: np.ndarray, count: int) -> np.ndarray:
@@ -42,18 +42,20 @@ def resample(samples: np.ndarray, count: int) -> np.ndarray:
     padded[:kept] = spectrum[:kept]
     if min(samples.size, count) % 2 == 0 and samples.size != count:
         padded[kept - 1] *= 0.5 if count > samples.size else 2.0
-    return np.fft.irfft(padded, count) * (count / samples.size)
+    values: np.ndarray = np.fft.irfft(padded, count) * (count / samples.size)
+    return values
 
 
 class TrigonometricSeries:
     """The trigonometric interpolant of periodic samples, to be evaluated anywhere.
 
-    Modes below ``1e-16`` of the largest are dropped.
+    Modes of an amplitude up to ``floor`` are dropped: where samples resolve the function well, most
+    of its modes are rounding.
     """
 
-    def __init__(self, samples: np.ndarray) -> None:
+    def __init__(self, samples: np.ndarray, floor: float = 0.0) -> None:
         amplitudes = np.fft.fft(samples) / samples.size
-        kept = np.abs(amplitudes) > 1e-16 * np.abs(amplitudes).max(initial=0.0)
+        kept = np.abs(amplitudes) > floor
         self._k = wavenumbers(samples.size)[kept]
         self._amplitudes = amplitudes[kept]
 

@@ -1,4 +1,8 @@
-"""The exact sign of the area of a triangle in floating point (after Shewchuk, 1997)."""
+"""The exact sign of the area of a triangle in floating point (after Shewchuk, 1997).
+
+Exact as long as no product of two coordinates overflows or loses digits by underflow, so for
+coordinates that are 0 or of a magnitude from 1e-130 to 1e130.
+"""
 
 from __future__ import annotations
 
@@ -6,14 +10,12 @@ import numpy as np
 
 from cellcrawl._compile import exact_kernel
 
-_FILTER = 3.3306690738754716e-16  # (3 + 16 u) u: above it the rounded determinant has the right sign
+_FILTER = 3.3306690738754716e-16  # (3 + 16 u) u: above it the rounded determinant has the sign
 _SPLIT = 134217729.0  # 2**27 + 1 splits a double into two halves
 
 
 @exact_kernel
-def orientation(
-    ax: float, ay: float, bx: float, by: float, cx: float, cy: float
-) -> int:
+def orientation(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
     """+1 if a, b, c turn left, -1 if they turn right, 0 if they lie on one line: always exact."""
     left = (ax - cx) * (by - cy)
     right = (ay - cy) * (bx - cx)
@@ -24,9 +26,7 @@ def orientation(
 
 
 @exact_kernel
-def _exact_sign(
-    ax: float, ay: float, bx: float, by: float, cx: float, cy: float
-) -> int:
+def _exact_sign(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
     expansion = np.zeros(12)
     size = 0
     for u, v in ((ax, by), (-ax, cy), (bx, cy), (-bx, ay), (cx, ay), (-cx, by)):
@@ -41,7 +41,7 @@ def _exact_sign(
 
 @exact_kernel
 def _product(a: float, b: float) -> tuple[float, float]:
-    """``a * b`` as a rounded product and its exact error."""
+    """Return ``a * b`` rounded, and its exact error."""
     high = a * b
     c = _SPLIT * a
     a_high = c - (c - a)

@@ -12,7 +12,11 @@ from typing import Any
 
 import numpy as np
 
+from cellcrawl.errors import InputError
 from cellcrawl.parameters import Parameters
+from cellcrawl.validation import real_array
+
+_HIGHEST = 1e6
 
 
 @dataclass(frozen=True)
@@ -45,23 +49,31 @@ def base_state(parameters: Parameters) -> BaseState:
 def growth_rates(parameters: Parameters, k: Any) -> np.ndarray:
     """Growth rates of wavenumber ``k``, complex, shape ``k.shape + (2,)``.
 
-    The root with the larger real part comes first; of a complex pair the one with the positive
-    imaginary part. ``k = 0`` is the breathing mode, with the tension law of ``parameters``.
+    The larger root comes first; of a complex pair the one with the positive imaginary part.
+    ``k = 0`` is the breathing mode, with the tension law of ``parameters``.
+
+    Raises
+    ------
+    InputError
+        For wavenumbers that are not numbers, or above a million.
     """
     p, base = parameters, base_state(parameters)
-    k = np.asarray(k, dtype=float)
+    k = real_array("k", k, None)
+    if np.abs(k).max(initial=0.0) > _HIGHEST:
+        raise InputError(f"k = {np.abs(k).max():g} is out of range: it must be up to {_HIGHEST:g}")
     q = p.r_on + p.r_p + p.D * k**2
     stiffness = p.epsilon * p.h * base.tension * (k**2 - 1.0)
     breathing = 2.0 * math.pi * p.epsilon * (1.0 + p.h) * p.tension_rate
     stiffness = stiffness + np.where(k == 0, breathing, 0.0)
     half = 0.5 * (base.a * q + stiffness * base.c - base.b) / base.a
     product = stiffness * base.c * q / base.a
-    root = np.sqrt((half**2 - product).astype(complex))
-    large = np.where(half > 0, -half - root, -half + root)
-    small = np.where(large != 0, product / np.where(large != 0, large, 1.0), 0.0)
-    pair = np.stack([large, small], axis=-1)
-    order = np.lexsort((-pair.imag, -pair.real), axis=-1)
-    return np.take_along_axis(pair, order, axis=-1)
+    discriminant = half**2 - product
+    root = np.sqrt(np.abs(discriminant))
+    far = -half - np.copysign(root, half)  # no cancellation; the other root from the product
+    near = np.divide(product, far, out=np.zeros_like(far), where=far != 0.0)
+    real = np.stack([np.maximum(far, near), np.minimum(far, near)], axis=-1)
+    pair = np.stack([-half + 1j * root, -half - 1j * root], axis=-1)
+    return np.where(discriminant[..., None] < 0.0, pair, real)
 
 
 def fastest_decay(parameters: Parameters) -> float:

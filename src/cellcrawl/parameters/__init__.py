@@ -2,6 +2,8 @@
 
 from cellcrawl.parameters.conditions import EDGE_ROWS, Conditions
 from cellcrawl.parameters.dimensionless import DESCRIPTIONS, ELASTICITIES, Parameters
+from cellcrawl.parameters.physical import QUANTITIES, PhysicalParameters
+from cellcrawl.parameters.scales import KINDS, Scales
 from cellcrawl.parameters.schedule import CONSTANT, Schedule
 
 __all__ = [
@@ -9,7 +11,11 @@ __all__ = [
     "DESCRIPTIONS",
     "EDGE_ROWS",
     "ELASTICITIES",
+    "KINDS",
+    "QUANTITIES",
     "Conditions",
     "Parameters",
+    "PhysicalParameters",
+    "Scales",
     "Schedule",
 ]

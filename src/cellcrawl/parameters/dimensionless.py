@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from dataclasses import dataclass
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from cellcrawl.parameters.named import NamedFields
 from cellcrawl.validation import one_of, real_number
@@ -86,7 +85,7 @@ class Parameters(NamedFields):
         for name, described in DESCRIPTIONS.items():
             value = real_number(name, getattr(self, name), described.low, described.high)
             object.__setattr__(self, name, value)
-        one_of("elasticity", self.elasticity, ELASTICITIES)
+        object.__setattr__(self, "elasticity", one_of("elasticity", self.elasticity, ELASTICITIES))
 
     @property
     def v_p(self) -> float:
@@ -109,8 +108,3 @@ class Parameters(NamedFields):
     def tension_rate(self) -> float:
         """``G`` of the tension law ``d sigma / dt = G dA / dt``, for this `elasticity`."""
         return self.k_sigma if self.elasticity == "printed" else self.k_sigma / self.epsilon
-
-    def replace(self, **changes: Any) -> Parameters:
-        """Return a copy with some values changed; the copy is validated."""
-        self.check_names(changes)
-        return dataclasses.replace(self, **changes)

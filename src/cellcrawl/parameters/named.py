@@ -10,14 +10,14 @@ from typing import Any, Self
 
 import tomli_w
 
-from cellcrawl.errors import InputError
-from cellcrawl.validation import known_names, table
+from cellcrawl.errors import InputError, StorageError
+from cellcrawl.validation import known_names, shown, table
 
 
 class NamedFields:
     """Base of the parameter classes: unknown names are refused, tables and TOML go in and out."""
 
-    def __new__(cls, *args: Any, **fields: Any) -> Self:
+    def __new__(cls, /, *args: Any, **fields: Any) -> Self:
         """Refuse positional values and unknown names before the dataclass sees them."""
         if args:
             raise InputError(f"{cls.__name__} takes its values by name, as in r_on=26")
@@ -36,6 +36,10 @@ class NamedFields:
         """Raise `InputError` for a name that is no field of this class."""
         known_names(cls.__name__, names, cls.field_names())
 
+    def replace(self, /, **changes: Any) -> Self:
+        """Return a copy with some values changed; the copy is validated."""
+        return type(self)(**{**self.to_dict(), **changes})
+
     def to_dict(self) -> dict[str, Any]:
         """Return the fields as a plain dict."""
         return {name: getattr(self, name) for name in self.field_names()}
@@ -49,22 +53,30 @@ class NamedFields:
         """Return the fields as TOML; with ``path``, write them there too."""
         text = tomli_w.dumps(self.to_dict())
         if path is not None:
-            Path(path).write_text(text, encoding="utf-8")
+            try:
+                Path(path).write_text(text, encoding="utf-8")
+            except OSError as error:
+                reason = error.strerror or error
+                raise StorageError(f"cannot write {str(path)!r}: {reason}") from None
         return text
 
     @classmethod
     def from_toml(cls, source: str | Path) -> Self:
-        """Read from a TOML file (a `Path`, or a string ending in ``.toml``) or from TOML text."""
+        """Read from a TOML file (a `Path`, or a name ending in ``.toml``) or from TOML text."""
         return cls.from_dict(read_toml(source))
 
 
 def read_toml(source: str | Path) -> dict[str, Any]:
-    """Parse a TOML file (a `Path`, or a string ending in ``.toml``) or TOML text."""
-    is_file = isinstance(source, Path) or source.strip().endswith(".toml")
-    name = f"{source}: " if is_file else "TOML: "
+    """Parse a TOML file (a `Path`, or a name ending in ``.toml``) or TOML text."""
+    if not isinstance(source, (str, Path)):
+        raise InputError(f"TOML comes from a path or text, not {shown(source)}")
+    is_file = isinstance(source, Path) or (source.endswith(".toml") and "\n" not in source)
+    name = repr(str(source)) if is_file else "this text (a file's name ends in .toml)"
     try:
-        return tomllib.loads(Path(source).read_text("utf-8") if is_file else str(source))
+        text = Path(source).read_text("utf-8-sig") if is_file else str(source)
+        return tomllib.loads(text)
     except OSError as error:
-        raise InputError(f"cannot read {source}: {error.strerror or error}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"{name}not valid TOML: {error}") from None
+        raise InputError(f"cannot read {name}: {error.strerror or error}") from None
+    except (ValueError, RecursionError) as error:
+        reason = " ".join(str(error).split())
+        raise InputError(f"{name} is not valid TOML: {reason[:200]}") from None

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import bisect
+import itertools
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from cellcrawl.errors import InputError
 from cellcrawl.parameters.dimensionless import DESCRIPTIONS, Parameters
-from cellcrawl.validation import known_names, real_number, table
+from cellcrawl.validation import known_names, real_number, shown, table
 
 
 class Schedule:
@@ -40,6 +41,8 @@ class Schedule:
     def __init__(self, changes: Mapping[str, Sequence[tuple[float, float]]]) -> None:
         known_names("Schedule", table("Schedule", changes), DESCRIPTIONS)
         self._points = {name: _checked(name, points) for name, points in changes.items()}
+        times = {time for points in self._points.values() for time, _ in points}
+        self._breaks = tuple(sorted(times))
 
     def at(self, parameters: Parameters, time: float) -> Parameters:
         """Return ``parameters`` with the scheduled values that hold from ``time`` on."""
@@ -52,19 +55,19 @@ class Schedule:
     @property
     def breaks(self) -> tuple[float, ...]:
         """Times at which a value jumps or a ramp begins or ends, in order."""
-        return tuple(sorted({time for points in self._points.values() for time, _ in points}))
+        return self._breaks
 
     def next_break(self, time: float) -> float:
         """Return the first break after ``time``, infinity if there is none."""
-        later = bisect.bisect_right(self.breaks, time)
-        return self.breaks[later] if later < len(self.breaks) else float("inf")
+        later = bisect.bisect_right(self._breaks, time)
+        return self._breaks[later] if later < len(self._breaks) else float("inf")
 
     def varies(self, start: float, end: float) -> bool:
         """Whether any value ramps between the breaks around ``start`` and ``end``."""
         return any(
             first[0] < end and second[0] > start and first[1] != second[1]
             for points in self._points.values()
-            for first, second in zip(points, points[1:], strict=False)
+            for first, second in itertools.pairwise(points)
             if first[0] < second[0]
         )
 
@@ -91,6 +94,8 @@ class Schedule:
 def _checked(name: str, points: Any) -> tuple[tuple[float, float], ...]:
     try:
         pairs = [(time, value) for time, value in points]
+        if isinstance(points, (str, Mapping)):
+            raise TypeError
     except (TypeError, ValueError):
         raise InputError(f"Schedule {name} must be a list of (time, value) pairs") from None
     if not pairs:
@@ -99,26 +104,32 @@ def _checked(name: str, points: Any) -> tuple[tuple[float, float], ...]:
     checked = tuple(
         (
             real_number(f"Schedule {name} time", time, -1e12, 1e12),
-            real_number(f"Schedule {name} at t = {time}", value, limits.low, limits.high),
+            real_number(f"Schedule {name} at t = {shown(time)}", value, limits.low, limits.high),
         )
         for time, value in pairs
     )
     times = [time for time, _ in checked]
     if times != sorted(times):
-        raise InputError(f"Schedule {name} has times out of order: {times}")
-    if any(times.count(time) > 2 for time in times):
+        late = next(i for i in range(1, len(times)) if times[i] < times[i - 1])
+        raise InputError(
+            f"Schedule {name} has times out of order: {times[late]:g} after {times[late - 1]:g}"
+        )
+    if any(first == third for first, third in zip(times, times[2:], strict=False)):
         raise InputError(f"Schedule {name} has a time three times: two make a jump")
     return checked
 
 
 def _value(points: tuple[tuple[float, float], ...], time: float, side: Any) -> float:
-    following = side([point[0] for point in points], time)
+    following: int = side(points, time, key=lambda point: point[0])
     if following == 0:
         return points[0][1]
     if following == len(points):
         return points[-1][1]
     (t0, v0), (t1, v1) = points[following - 1], points[following]
-    return v0 + (v1 - v0) * ((time - t0) / (t1 - t0))
+    between = v0 + (v1 - v0) * ((time - t0) / (t1 - t0))
+    if time == t1:
+        return v1
+    return min(max(between, min(v0, v1)), max(v0, v1))  # rounding must not leave the range
 
 
 CONSTANT = Schedule({})

@@ -20,7 +20,7 @@ ROUND_OFF = 3e-14  # residual over (1 + F) below which the root is as good as ro
 
 @kernel
 def balance(y: float, n: float, zeta_1: float, force: float) -> float:
-    """``y = log r`` from any guess, by Newton steps that cannot miss the root; NaN if there is none."""
+    """``y = log r`` from any guess, by Newton steps that cannot miss; NaN if there is no root."""
     if not (force >= 0.0 and force < np.inf and n == n and zeta_1 * n >= 0.0):
         return np.nan
     highest = math.log1p(force)  # friction(highest) >= force, whatever n >= 0 is
@@ -45,7 +45,7 @@ def solve_off_rate(
     sigma_c: np.ndarray,
     h: np.ndarray,
 ) -> int:
-    """Solve every node in place from the last ``y``; return `SOLVED` or the first node without a root.
+    """Solve every node in place from the last ``y``; return `SOLVED` or a node without a root.
 
     Two Halley steps reach rounding from a near guess and vectorise; nodes they do not settle are
     solved one by one. Arrays have shape (nodes,).
@@ -67,9 +67,7 @@ def solve_off_rate(
     if unsettled == 0:
         return SOLVED
     for i in range(nodes):
-        y[i] = balance(
-            y[i], n[i], zeta_1[i], driving_force(sigma, kappa[i], sigma_c[i], h[i])
-        )
+        y[i] = balance(y[i], n[i], zeta_1[i], driving_force(sigma, kappa[i], sigma_c[i], h[i]))
         if y[i] != y[i]:
             return i
     return SOLVED

@@ -31,7 +31,7 @@ def friction(y: float, r: float, n: float, zeta_1: float) -> float:
 
 @inlined_kernel
 def friction_slope(y: float, r: float, n: float, zeta_1: float) -> float:
-    """Derivative of `friction` with respect to ``y = log r``; positive for ``y >= 0``."""
+    """Slope of `friction` in ``y = log r``; positive for ``y >= 0``."""
     return r * (1.0 + y) + zeta_1 * n
 
 

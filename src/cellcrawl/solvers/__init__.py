@@ -6,8 +6,6 @@ from cellcrawl.solvers.adaptive import AdaptiveSolver
 from cellcrawl.solvers.base import Breakdown, Frame, Solver
 from cellcrawl.solvers.paper import PaperSolver
 
-SOLVERS: dict[str, type[Solver]] = {
-    solver.name: solver for solver in (AdaptiveSolver, PaperSolver)
-}
+SOLVERS: dict[str, type[Solver]] = {solver.name: solver for solver in (AdaptiveSolver, PaperSolver)}
 
 __all__ = ["SOLVERS", "Breakdown", "Frame", "Solver"]

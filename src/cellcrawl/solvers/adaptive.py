@@ -30,8 +30,8 @@ _SPATIAL_SHARE = 0.005  # of what the grid misses, in the error at t = 5
 class AdaptiveSolver(Solver):
     """Tenth order in space on a staggered grid, error-controlled stabilised steps in time.
 
-    ``rtol`` is the relative error asked of length, tension, area and position (over the radius) and
-    of the fields on the edge after a few units of time. The node count follows the state's spectrum.
+    ``rtol`` is the error asked of length, tension and area (relative) and of position (over the
+    radius) after a few units of time. The node count follows the state's spectrum.
     """
 
     name: ClassVar[str] = "adaptive"
@@ -64,8 +64,9 @@ class AdaptiveSolver(Solver):
         self._tally = np.zeros(4)  # fewest nodes, most nodes, regrids, largest closure error
         self._control[drive.TIME] = self._control[drive.PREVIOUS_TIME] = time
         self._edges: tuple[float, np.ndarray] | None = None
-        self._restarting = True
-        self._order = stabilised.ORDER
+        self._counters[drive.RESTARTING] = 1
+        self._counters[drive.ORDER] = stabilised.ORDER
+        self._framed: Frame | None = None
         if start is not None:
             self._begin(start)
 
@@ -74,8 +75,8 @@ class AdaptiveSolver(Solver):
         """Time of the current state: the end of the last step."""
         return float(self._control[drive.TIME])
 
-    @staticmethod
-    def checked_nodes(nodes: Any) -> int:
+    @classmethod
+    def checked_nodes(cls, nodes: Any) -> int:
         """Return the number of output nodes, 256 for None."""
         return 256 if nodes is None else whole_number("nodes", nodes, 16, 100_000)
 
@@ -86,15 +87,16 @@ class AdaptiveSolver(Solver):
 
     def advance(self, target: float) -> Breakdown | None:
         while self.time < target:
+            self._framed = None
             now = self.time
             end = self._conditions.next_break(now)
-            if self._restarting and not self._restart(end):
+            if self._counters[drive.RESTARTING] and not self._restart(end):
                 return self._no_root(now)
             code = drive.run(
                 target,
                 end,
                 self._local_tolerance(),
-                self._order,
+                int(self._counters[drive.ORDER]),
                 _STEPS_PER_CALL,
                 _grid_tolerance(self._rtol),
                 (self._min_nodes, self._max_nodes),
@@ -108,7 +110,7 @@ class AdaptiveSolver(Solver):
                 self._work,
             )
             if code == drive.AT_BREAK:
-                self._restarting = True
+                self._counters[drive.RESTARTING] = 1
             elif code == drive.CHECK_NODES:
                 breakdown = self._fit_grid()
                 if breakdown is not None:
@@ -118,6 +120,8 @@ class AdaptiveSolver(Solver):
         return None
 
     def frame(self, time: float) -> Frame:
+        if self._framed is not None and self._framed.time == time:
+            return self._framed  # the crossing check and the output ask for the same instant
         first, last = self._control[drive.PREVIOUS_TIME], self.time
         if not first <= time <= last:
             raise ValueError(f"t = {time} is not within the last step, from {first} to {last}")
@@ -127,6 +131,7 @@ class AdaptiveSolver(Solver):
             state = layout.hermite((time - first) / (last - first), last - first, ends)
         made, closure = frame(time, state, self._log_rate, self._conditions.edge(time, self._nodes))
         self._tally[3] = max(self._tally[3], closure)
+        self._framed = made
         return made
 
     def checkpoint(self) -> dict[str, np.ndarray]:
@@ -134,8 +139,6 @@ class AdaptiveSolver(Solver):
             "control": self._control.copy(),
             "counters": self._counters.copy(),
             "tally": self._tally.copy(),
-            "restarting": np.array(self._restarting),
-            "order": np.array(self._order),
             "states": self._states[: drive.TRIAL].copy(),
             "log_rate": self._log_rate.copy(),
         }
@@ -144,8 +147,7 @@ class AdaptiveSolver(Solver):
         self._control = np.array(checkpoint["control"], dtype=float)
         self._counters = np.array(checkpoint["counters"], dtype=np.int64)
         self._tally = np.array(checkpoint["tally"], dtype=float)
-        self._restarting = bool(checkpoint["restarting"])
-        self._order = int(checkpoint["order"])
+        self._framed = None
         self._hold(np.array(checkpoint["states"], dtype=float))
         self._log_rate = np.array(checkpoint["log_rate"], dtype=float)
 
@@ -217,7 +219,7 @@ class AdaptiveSolver(Solver):
         _, control[drive.CONTRAST] = resolution.missed(
             self._states[drive.CURRENT], layout.nodes_of(self._states), self._work
         )
-        self._restarting = False
+        self._counters[drive.RESTARTING] = 0
         return True
 
     def _take_rates(self) -> bool:
@@ -255,7 +257,7 @@ class AdaptiveSolver(Solver):
         return np.vstack([local, np.full(nodes, self._conditions.tension_rate(time))])
 
     def _scheme(self) -> Scheme:
-        if self._order == chebyshev.ORDER:
+        if self._counters[drive.ORDER] == chebyshev.ORDER:
             return chebyshev.chebyshev_scheme()
         return fourth_order_scheme()
 
@@ -263,13 +265,13 @@ class AdaptiveSolver(Solver):
         """Second order where the tension is the stiffest and the tolerance loose, else fourth."""
         tension, radius = self._control[drive.TENSION_DECAY], self._control[drive.RADIUS]
         stiff = tension > _STIFF_TENSION * radius and self._rtol >= _STIFF_TENSION_RTOL
-        self._order = chebyshev.ORDER if stiff else stabilised.ORDER
+        self._counters[drive.ORDER] = chebyshev.ORDER if stiff else stabilised.ORDER
 
     def _local_tolerance(self) -> float:
         """Local error that leaves a global error of about ``rtol`` at t = 5 (measured)."""
-        if self._order == chebyshev.ORDER:
+        if self._counters[drive.ORDER] == chebyshev.ORDER:
             return float((5.0 * self._rtol) ** 1.5)
-        return 10.0 * self._rtol
+        return float(10.0 * self._rtol * (self._rtol / 1e-4) ** 0.15)
 
     def _fit_grid(self) -> Breakdown | None:
         """Go on with as many nodes as the spectrum asks for."""
@@ -309,7 +311,7 @@ class AdaptiveSolver(Solver):
         return Breakdown(
             "step_too_small",
             self.time,
-            f"the step has shrunk to {drive.SHORTEST_STEP:g} at t = {self.time:.6g} without meeting "
+            f"the step has shrunk to {drive.SHORTEST_STEP:g} at t = {self.time:.6g} and misses "
             f"rtol = {self._rtol:g}: raise rtol",
         )
 

@@ -1,8 +1,8 @@
 """Rates of change of the whole state on the staggered grid, and how stiff they are.
 
-A state is one flat array: ``w = theta - winding`` at the nodes with its halo, ``n`` at the midpoints
-with its halo, then the scalars length, tension, area and position of node 0. Kernels use the
-paper's letters: ``U`` edge velocity, ``T`` tangential velocity of the nodes, ``y = log r``.
+A state is one flat array: ``w = theta - winding`` at the nodes and ``n`` at the midpoints, each with
+its halo, then the scalars length, tension, area and position of node 0. Kernels use the paper's
+letters: ``U`` edge velocity, ``T`` tangential velocity of the nodes, ``y = log r``.
 """
 
 from __future__ import annotations
@@ -132,8 +132,8 @@ def rates(
 ) -> bool:
     """Write the rates of change of ``state`` to ``out``; False where there is no off-rate.
 
-    Fills the halos of ``state``. ``y`` is the last ``log r`` and becomes the new one; ``edge`` holds
-    the parameters at the midpoints and in its last row G, shape (8, nodes).
+    Fills the halos of ``state``. ``y`` is the last ``log r`` and becomes the new one. ``edge``
+    holds the parameters at the midpoints and in its last row G, shape (8, nodes).
     """
     nodes = y.size
     span = nodes + 2 * HALO

@@ -19,7 +19,7 @@ def size(nodes: int) -> int:
 
 def nodes_of(state: np.ndarray) -> int:
     """Nodes of a state, or of a stack of them."""
-    return (state.shape[-1] - SCALARS) // 2 - 2 * HALO
+    return int(state.shape[-1] - SCALARS) // 2 - 2 * HALO
 
 
 def angle(state: np.ndarray) -> np.ndarray:
@@ -75,7 +75,7 @@ def regridded(states: np.ndarray, nodes: int) -> np.ndarray:
 
 
 def resampled_midpoints(samples: np.ndarray, nodes: int) -> np.ndarray:
-    """Samples at midpoints on another number of nodes."""
+    """Return samples at midpoints on another number of nodes."""
     return shifted(fourier.resample(shifted(samples, -0.5), nodes), 0.5)
 
 

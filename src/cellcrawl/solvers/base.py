@@ -69,6 +69,17 @@ class Solver(ABC):
         The scheme's own numbers, named in `OPTIONS`.
     """
 
+    def __init__(
+        self,
+        start: CellState | None,
+        conditions: Conditions,
+        time: float = 0.0,
+        *,
+        nodes: int,
+        **options: Any,
+    ) -> None:
+        raise NotImplementedError
+
     name: ClassVar[str]
     OPTIONS: ClassVar[dict[str, str]]
     """Names of the scheme's options with a line on each, for help and error messages."""
@@ -77,9 +88,14 @@ class Solver(ABC):
     """Time of the solver's current state: the end of its last step."""
 
     @classmethod
+    @abstractmethod
+    def checked_nodes(cls, nodes: Any) -> int:
+        """Return the number of nodes in a frame, the usual one for None, or raise `InputError`."""
+
+    @classmethod
+    @abstractmethod
     def start_nodes(cls, nodes: int) -> int:
-        """Return the number of nodes on which to sample a start, for an output on ``nodes``."""
-        return nodes
+        """Return on how many nodes the start should be given."""
 
     @abstractmethod
     def advance(self, target: float) -> Breakdown | None:
@@ -92,6 +108,10 @@ class Solver(ABC):
     @abstractmethod
     def frame(self, time: float) -> Frame:
         """Return the cell at ``time``, which must lie within the last step."""
+
+    def points(self, time: float) -> np.ndarray:
+        """Return the edge at ``time``, shape (nodes, 2), for the self-crossing check."""
+        return self.frame(time).points
 
     @abstractmethod
     def checkpoint(self) -> dict[str, np.ndarray]:

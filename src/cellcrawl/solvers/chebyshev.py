@@ -1,4 +1,4 @@
-"""Second-order Runge-Kutta-Chebyshev steps (Sommeijer, Shampine & Verwer, J. Comput. Appl. Math. 1998).
+"""Second-order Runge-Kutta-Chebyshev steps (Sommeijer, Shampine & Verwer 1998).
 
 Every stage is consistent to second order, so a stiff tension stays close to its slow course; the
 fourth-order family amplifies the curvature of that course by the cube of the stiffness.

@@ -13,8 +13,9 @@ def solve_cyclic_tridiagonal(
 ) -> None:
     """Solve ``lower[i] x[i-1] + diagonal[i] x[i] + upper[i] x[i+1] = right[i]``, indices wrapped.
 
-    The solution replaces ``right``. Thomas elimination with a rank-one (Sherman-Morrison) correction
-    for the two corners; the matrix must be diagonally dominant. ``work`` has shape (2, nodes).
+    The solution replaces ``right``. Thomas elimination with a rank-one (Sherman-Morrison)
+    correction for the two corners; the matrix must be diagonally dominant. ``work`` has shape
+    (2, nodes).
     """
     nodes = right.size
     ratio, corner = work[0], work[1]
@@ -35,8 +36,6 @@ def solve_cyclic_tridiagonal(
         right[i] -= ratio[i] * right[i + 1]
         corner[i] -= ratio[i] * corner[i + 1]
     weight = lower[0] / gamma
-    factor = (right[0] + weight * right[nodes - 1]) / (
-        1.0 + corner[0] + weight * corner[nodes - 1]
-    )
+    factor = (right[0] + weight * right[nodes - 1]) / (1.0 + corner[0] + weight * corner[nodes - 1])
     for i in range(nodes):
         right[i] -= factor * corner[i]

@@ -28,8 +28,9 @@ _STABLE = 2.0  # explicit Euler decays while step * rate < 2
 class PaperSolver(Solver):
     """The scheme of Chen, Saintillan & Rangamani (2023), with the transport term ``T n_s``.
 
-    First order in time, second in space. ``elasticity="consistent"`` adds a tension mode that decays
-    so fast that the published step of 1e-3 is unstable; such a step is refused with one that works.
+    First order in time, second in space. ``elasticity="consistent"`` adds a tension mode that
+    decays so fast that the published step of 1e-3 is unstable; such a step is refused with one that
+    works.
     """
 
     name: ClassVar[str] = "paper"
@@ -61,10 +62,13 @@ class PaperSolver(Solver):
         if start is not None:
             self._begin(start)
 
-    @staticmethod
-    def checked_nodes(nodes: Any) -> int:
-        """Return the number of nodes, 2000 for None."""
+    @classmethod
+    def checked_nodes(cls, nodes: Any) -> int:
         return 2000 if nodes is None else whole_number("nodes", nodes, 16, 100_000)
+
+    @classmethod
+    def start_nodes(cls, nodes: int) -> int:
+        return nodes
 
     def advance(self, target: float) -> Breakdown | None:
         while self.time < target - _ON_GRID * self._dt:
@@ -219,7 +223,7 @@ class PaperSolver(Solver):
         return self._anchor + count * self._dt
 
     def _steps_towards(self, target: float) -> int:
-        """Steps from now to the first step at or after ``target``, staying before the next break."""
+        """Steps from now to the first step at or after ``target``, but before the next break."""
         needed = math.ceil((target - self._anchor) / self._dt - _ON_GRID) - self._steps_from_anchor
         end = self._conditions.next_break(self.time)
         if math.isfinite(end):
@@ -286,5 +290,5 @@ def _fastest_rate(scalars: np.ndarray, fields: np.ndarray, edge: np.ndarray) -> 
 
 
 def _one_digit_below(value: float) -> float:
-    power = 10.0 ** math.floor(math.log10(value))
-    return math.floor(value / power) * power
+    power = math.floor(math.log10(value))
+    return float(f"{math.floor(value / 10.0**power)}e{power}")

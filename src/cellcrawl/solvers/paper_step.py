@@ -58,9 +58,7 @@ def crank_nicolson(
     for i in range(nodes):
         before = n[i - 1] if i > 0 else n[nodes - 1]
         after = n[i + 1] if i < nodes - 1 else n[0]
-        right[i] = (
-            (2.0 - diagonal[i]) * n[i] - lower[i] * before - upper[i] * after + dt * r_on[i]
-        )
+        right[i] = (2.0 - diagonal[i]) * n[i] - lower[i] * before - upper[i] * after + dt * r_on[i]
     solve_cyclic_tridiagonal(lower, diagonal, upper, right, work[4:6])
     for i in range(nodes):
         n[i] = right[i]
@@ -86,8 +84,8 @@ def advance(
     Returns
     -------
     code : int
-        `STEPPED`, or why the next step cannot be taken: `NO_ROOT` or `NOT_FINITE`. The state is then
-        the last valid one.
+        `STEPPED`, or why the next step cannot be taken: `NO_ROOT` or `NOT_FINITE`. The state is
+        then the last valid one.
     node : int
         The node it happened at.
     taken : int
@@ -127,9 +125,7 @@ def advance(
         new[TENSION] = scalars[TENSION] + tension_rate * (new[AREA] - scalars[AREA])
 
         new_n[:] = n
-        crank_nicolson(
-            new_n, r, tangential, new[LENGTH] / nodes, dt, r_on, diffusivity, spare
-        )
+        crank_nicolson(new_n, r, tangential, new[LENGTH] / nodes, dt, r_on, diffusivity, spare)
         new_y[:] = y
         if not (math.isfinite(new[TENSION]) and math.isfinite(new_n.sum() + kappa.sum())):
             return NOT_FINITE, _first_not_finite(new_n, kappa), step

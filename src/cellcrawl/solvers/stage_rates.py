@@ -15,7 +15,8 @@ def mix(values: np.ndarray, part: float, out: np.ndarray) -> np.ndarray:
     ``values`` has shape (times, 8, nodes).
     """
     if values.shape[0] == 1:
-        return values[0]
+        still: np.ndarray = values[0]
+        return still
     third = 3.0 * part
     w0 = -(third - 1.0) * (third - 2.0) * (third - 3.0) / 6.0
     w1 = third * (third - 2.0) * (third - 3.0) / 2.0

@@ -56,67 +56,72 @@ DIFFERENCE_PEAK: Final = 2.0 * (_S1 - _S2 + _S3 - _S4 + _S5)
 @inlined_kernel
 def difference_ahead(a: np.ndarray, i: np.uint64) -> float:
     """First difference half a spacing after entry ``i``: from nodes to midpoints."""
-    return (
+    value: float = (
         _S1 * (a[i + _1] - a[i])
         + _S2 * (a[i + _2] - a[i - _1])
         + _S3 * (a[i + _3] - a[i - _2])
         + _S4 * (a[i + _4] - a[i - _3])
         + _S5 * (a[i + _5] - a[i - _4])
     )
+    return value
 
 
 @inlined_kernel
 def difference_behind(a: np.ndarray, i: np.uint64) -> float:
     """First difference half a spacing before entry ``i``: from midpoints to nodes."""
-    return (
+    value: float = (
         _S1 * (a[i] - a[i - _1])
         + _S2 * (a[i + _1] - a[i - _2])
         + _S3 * (a[i + _2] - a[i - _3])
         + _S4 * (a[i + _3] - a[i - _4])
         + _S5 * (a[i + _4] - a[i - _5])
     )
+    return value
 
 
 @inlined_kernel
 def mean_ahead(a: np.ndarray, i: np.uint64) -> float:
     """Value half a spacing after entry ``i``: from nodes to midpoints."""
-    return (
+    value: float = (
         _M1 * (a[i + _1] + a[i])
         + _M2 * (a[i + _2] + a[i - _1])
         + _M3 * (a[i + _3] + a[i - _2])
         + _M4 * (a[i + _4] + a[i - _3])
         + _M5 * (a[i + _5] + a[i - _4])
     )
+    return value
 
 
 @inlined_kernel
 def mean_behind(a: np.ndarray, i: np.uint64) -> float:
     """Value half a spacing before entry ``i``: from midpoints to nodes."""
-    return (
+    value: float = (
         _M1 * (a[i] + a[i - _1])
         + _M2 * (a[i + _1] + a[i - _2])
         + _M3 * (a[i + _2] + a[i - _3])
         + _M4 * (a[i + _3] + a[i - _4])
         + _M5 * (a[i + _4] + a[i - _5])
     )
+    return value
 
 
 @inlined_kernel
 def central_difference(a: np.ndarray, i: np.uint64) -> float:
     """First difference at entry ``i`` itself."""
-    return (
+    value: float = (
         _C1 * (a[i + _1] - a[i - _1])
         + _C2 * (a[i + _2] - a[i - _2])
         + _C3 * (a[i + _3] - a[i - _3])
         + _C4 * (a[i + _4] - a[i - _4])
         + _C5 * (a[i + _5] - a[i - _5])
     )
+    return value
 
 
 @inlined_kernel
 def second_difference(a: np.ndarray, i: np.uint64) -> float:
     """Second difference at entry ``i``."""
-    return (
+    value: float = (
         _D0 * a[i]
         + _D1 * (a[i + _1] + a[i - _1])
         + _D2 * (a[i + _2] + a[i - _2])
@@ -124,18 +129,20 @@ def second_difference(a: np.ndarray, i: np.uint64) -> float:
         + _D4 * (a[i + _4] + a[i - _4])
         + _D5 * (a[i + _5] + a[i - _5])
     )
+    return value
 
 
 @inlined_kernel
 def cell_mean(a: np.ndarray, i: np.uint64) -> float:
     """Mean over the cell around midpoint ``i``, from node ``i`` to the next."""
-    return (
+    value: float = (
         _I0 * a[i]
         + _I1 * (a[i + _1] + a[i - _1])
         + _I2 * (a[i + _2] + a[i - _2])
         + _I3 * (a[i + _3] + a[i - _3])
         + _I4 * (a[i + _4] + a[i - _4])
     )
+    return value
 
 
 @kernel

@@ -20,8 +20,8 @@ def relative_size(
     """Root of the summed squares: angle and bound fraction in the mean, scalars relative.
 
     Angle and bound fraction count against ``contrast``, the size of the waves on the edge: while
-    small waves grow, so do their errors.
-    The position counts against a radius of 1, the tension's error is multiplied by ``relief``. Infinity when it is not a number.
+    small waves grow, so do their errors. The position counts against a radius of 1, the tension's
+    error is multiplied by ``relief``. Infinity when it is not a number.
     """
     span = nodes + 2 * HALO
     s0 = s1 = s2 = s3 = 0.0

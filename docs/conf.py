@@ -1,0 +1,31 @@
+"""Sphinx configuration; `sphinx-build -W docs docs/_build/html` builds the site."""
+
+from importlib.metadata import version as installed_version
+
+project = "cellcrawl"
+author = "The cellcrawl developers"
+copyright = "2026, the cellcrawl developers"
+release = version = installed_version("cellcrawl")
+
+extensions = [
+    "myst_parser",
+    "numpydoc",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.mathjax",
+    "sphinx_copybutton",
+    "sphinx_design",
+    "sphinx-mathjax-offline",
+]
+myst_enable_extensions = ["colon_fence", "dollarmath", "attrs_block", "attrs_inline"]
+myst_heading_anchors = 3
+exclude_patterns = ["_build"]
+numpydoc_show_class_members = False
+autodoc_typehints = "none"
+autodoc_member_order = "bysource"
+copybutton_prompt_text = r">>> |\.\.\. |\$ "
+copybutton_prompt_is_regexp = True
+
+html_theme = "furo"
+html_title = "cellcrawl"
+html_static_path: list[str] = []
+html_show_sourcelink = False

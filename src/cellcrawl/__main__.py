@@ -1,0 +1,5 @@
+"""`python -m cellcrawl`."""
+
+from cellcrawl.command_line import main
+
+main()

@@ -1,0 +1,1 @@
+"""Benchmarks anyone can run: work against precision, cost against size, start-up."""

@@ -1,0 +1,164 @@
+"""Work against precision: what each solver's accuracy costs, in one process on one machine."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from cellcrawl.bench import rivals
+from cellcrawl.bench.cases import LAWS, POINTS, Case, error, reference, summary
+from cellcrawl.solvers import SOLVERS
+
+_FAST_ENOUGH = 0.3  # a run this short is repeated and its best time taken
+_REPEATS = 3
+
+
+class Row(NamedTuple):
+    """One run: what, how accurate, at what cost."""
+
+    case: str
+    t_end: float
+    solver: str
+    setting: str
+    error: float
+    seconds: float
+    nodes: int
+
+
+def cases(quick: bool) -> list[Case]:
+    """Return the cells measured: all points and laws, and two more diffusivities."""
+    if quick:
+        return [Case(26, 600), Case(26, 600, "consistent"), Case(16, 600)]
+    base = [Case(*point, law) for point in POINTS for law in LAWS]
+    return base + [Case(26, 600, law, D) for law in LAWS for D in (0.01, 0.1)]
+
+
+def measure(quick: bool = False, times: tuple[float, ...] = (5.0, 20.0)) -> Iterator[Row]:
+    """Run every solver on every case, coarse to fine."""
+    for t_end in times[:1] if quick else times:
+        for shape in cases(quick):
+            case = Case(shape.r_on, shape.zeta_1, shape.elasticity, shape.D, t_end)
+            truth = reference(case)
+            yield from _adaptive(case, truth, quick)
+            yield from _paper(case, truth, quick)
+            yield from _rivals(case, truth, quick)
+
+
+def _adaptive(case: Case, truth: np.ndarray, quick: bool) -> Iterator[Row]:
+    for rtol in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)[: 5 if quick else 6]:
+        found, seconds, nodes = timed(lambda rtol=rtol: _solve("adaptive", case, rtol=rtol))
+        yield _row(case, "adaptive", f"rtol {rtol:g}", found, truth, seconds, nodes)
+
+
+def _paper(case: Case, truth: np.ndarray, quick: bool) -> Iterator[Row]:
+    steps = [(2000, None)] if quick else [(1000, None), (2000, None), (2000, 1e-4)]
+    for nodes, dt in steps:
+        if case.t_end > 5.0 and dt is not None:
+            continue
+        found, seconds, _ = timed(lambda n=nodes, dt=dt: _solve("paper", case, nodes=n, dt=dt))
+        setting = f"N {nodes}, dt {dt or 'usual'}"
+        yield _row(case, "paper", setting, found, truth, seconds, nodes)
+
+
+def _rivals(case: Case, truth: np.ndarray, quick: bool) -> Iterator[Row]:
+    tolerances = (1e-4, 1e-6, 1e-8) if quick else (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
+    for name, solve in rivals.available().items():
+        if quick and name == "SciPy BDF":
+            continue
+        for rtol in tolerances:
+            # The grid that the adaptive solver finds necessary at such an error.
+            nodes = _solve("adaptive", case, rtol=max(10.0 * rtol, 1e-8))[1]
+
+            def run(rtol: float = rtol, nodes: int = nodes, solve: Any = solve) -> Any:
+                system = rivals.FixedGrid(case, nodes)
+                return system.summary(case.t_end, solve(system, case.t_end, rtol)), nodes
+
+            found, seconds, nodes = timed(run)
+            yield _row(case, name, f"rtol {rtol:g}", found, truth, seconds, nodes)
+            if seconds > (3.0 if quick else 20.0):
+                break
+
+
+def _solve(name: str, case: Case, **options: Any) -> tuple[np.ndarray, int]:
+    """Return the summary and the most nodes used; NaN if the run broke down."""
+    scheme = SOLVERS[name]
+    nodes = scheme.checked_nodes(options.pop("nodes", None))
+    solver = scheme(case.start(scheme.start_nodes(nodes)), case.conditions, nodes=nodes, **options)
+    if solver.advance(case.t_end) is not None:
+        return np.full(3, np.nan), nodes
+    most = int(solver.diagnostics().get("most_nodes", nodes))
+    return summary(solver.frame(case.t_end)), most
+
+
+def timed(run: Callable[[], tuple[np.ndarray, int]]) -> tuple[np.ndarray, float, int]:
+    """Return what ``run`` finds, the best of a few times in seconds, and its nodes."""
+    best = math.inf
+    for _ in range(_REPEATS):
+        start = time.perf_counter()
+        found, nodes = run()
+        best = min(best, time.perf_counter() - start)
+        if best > _FAST_ENOUGH:
+            break
+    return found, best, nodes
+
+
+def speed_up(rows: list[Row], solver: str, at_error: float) -> float:
+    """Return how many times longer ``solver`` takes than adaptive for ``at_error``, one case.
+
+    Both are interpolated between their runs in logarithms, along the front of runs that no other
+    run of the solver beats in both error and time. NaN where one of them does not get there.
+    """
+    return _seconds_at(rows, solver, at_error) / _seconds_at(rows, "adaptive", at_error)
+
+
+def _seconds_at(rows: list[Row], solver: str, at_error: float) -> float:
+    runs = sorted((row.error, row.seconds) for row in rows if row.solver == solver)
+    front = [run for run in runs if not any(e <= run[0] and s < run[1] for e, s in runs)]
+    errors, seconds = (np.log([pair[i] for pair in front] or [1.0]) for i in (0, 1))
+    if not front or not errors[0] <= math.log(at_error):
+        return math.nan
+    return float(np.exp(np.interp(math.log(at_error), errors, seconds)))
+
+
+def _row(
+    case: Case,
+    solver: str,
+    setting: str,
+    found: np.ndarray,
+    truth: np.ndarray,
+    seconds: float,
+    nodes: int,
+) -> Row:
+    return Row(case.label, case.t_end, solver, setting, error(found, truth), seconds, nodes)
+
+
+def plot(rows: list[Row]) -> Figure:
+    """Draw error against time, one panel a case."""
+    keys = list(dict.fromkeys((row.case, row.t_end) for row in rows))
+    columns = min(len(keys), 3)
+    lines = math.ceil(len(keys) / columns)
+    figure = Figure(figsize=(3.2 * columns, 2.6 * lines), layout="constrained")
+    axes = figure.subplots(lines, columns, squeeze=False, sharex=True, sharey=True).flat
+    names = list(dict.fromkeys(row.solver for row in rows))
+    for ax, (case, t_end) in zip(axes, keys, strict=False):
+        for number, name in enumerate(names):
+            runs = [r for r in rows if (r.case, r.t_end, r.solver) == (case, t_end, name)]
+            ax.loglog(
+                [r.error for r in runs],
+                [r.seconds for r in runs],
+                "o^sDv"[number % 5] + "-",
+                ms=3,
+                lw=1,
+                label=name,
+            )
+        ax.set_title(f"{case}, t = {t_end:g}", fontsize=7)
+        ax.tick_params(labelsize=7)
+    figure.supxlabel("error of length and centroid", fontsize=8)
+    figure.supylabel("time (s)", fontsize=8)
+    figure.axes[0].legend(fontsize=6)
+    return figure

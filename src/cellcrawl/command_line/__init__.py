@@ -1,0 +1,5 @@
+"""The command `cellcrawl`."""
+
+from cellcrawl.command_line.main import main
+
+__all__ = ["main"]

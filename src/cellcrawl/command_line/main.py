@@ -1,0 +1,126 @@
+"""The command group, and how errors become one line and an exit code."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Sequence
+from typing import Any, Final
+
+import click
+
+USER_MISTAKE: Final = 2
+RUN_FAILED: Final = 3
+CANCELLED: Final = 130
+
+# Commands live in modules of their own, imported only when they are asked for.
+_COMMANDS: Final[dict[str, tuple[str, str]]] = {
+    "simulate": ("simulate", "Simulate one cell; leave its data, a picture and a movie."),
+    "resume": ("resume", "Go on with a saved run."),
+    "plot": ("draw", "Draw a saved run."),
+    "movie": ("draw", "Film a saved run."),
+    "info": ("info", "Say what a file holds."),
+    "completion": ("completion", "Print the shell completion script."),
+}
+
+
+class _LazyGroup(click.Group):
+    """A group whose commands are imported when used, so that --help answers at once."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(_COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in _COMMANDS:
+            return None
+        module = importlib.import_module(f"cellcrawl.command_line.{_COMMANDS[cmd_name][0]}")
+        command: click.Command = getattr(module, cmd_name)
+        return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if args and args[0] not in _COMMANDS and not args[0].startswith("-"):
+            from cellcrawl.errors import nearest_name
+
+            ctx.fail(f"no command {args[0]!r}: {nearest_name(args[0], _COMMANDS)}")
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, text) for name, (_, text) in _COMMANDS.items()])
+
+
+def _version(ctx: click.Context, parameter: click.Parameter, value: bool) -> None:
+    if value and not ctx.resilient_parsing:
+        from importlib.metadata import version
+
+        click.echo(f"cellcrawl {version('cellcrawl')}")
+        ctx.exit()
+
+
+@click.group(cls=_LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_version,
+    help="Print the version and stop.",
+)
+def commands() -> None:
+    """Simulate how single cells crawl.
+
+    A deformable edge, adhesions that stick and slip, and one membrane tension: out of these a round
+    cell breaks its symmetry and glides, zigzags or turns.
+
+    \b
+    Start with
+      cellcrawl simulate                            a zigzagging cell of the paper
+      cellcrawl simulate --r-on 24 --zeta-1 540     one that turns
+      cellcrawl info cellcrawl-run/run.nc           what the file holds
+    """
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line; ends the process with an exit code.
+
+    0: ended as the model allows. 2: a mistake in what was asked. 3: a run that failed. 130: Ctrl-C,
+    with what was computed kept.
+    """
+    sys.exit(run(arguments))
+
+
+def run(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code."""
+    from cellcrawl.errors import CellcrawlError, InputError
+
+    try:
+        result: Any = commands.main(
+            args=None if arguments is None else list(arguments),
+            prog_name="cellcrawl",
+            standalone_mode=False,
+        )
+    except click.exceptions.Abort:
+        return CANCELLED
+    except click.ClickException as error:
+        context = getattr(error, "ctx", None)
+        path = context.command_path if context is not None else "cellcrawl"
+        _complain(f"{error.format_message()} (see {path} --help)")
+        return USER_MISTAKE
+    except InputError as error:
+        _complain(str(error))
+        return USER_MISTAKE
+    except CellcrawlError as error:
+        _complain(str(error))
+        return RUN_FAILED
+    except KeyboardInterrupt:
+        _complain("stopped")
+        return CANCELLED
+    except BrokenPipeError:
+        return 0
+    return result if isinstance(result, int) else 0
+
+
+def _complain(message: str) -> None:
+    click.echo(f"cellcrawl: {message}", err=True)

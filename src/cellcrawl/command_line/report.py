@@ -1,0 +1,57 @@
+"""What the terminal says of a run."""
+
+from __future__ import annotations
+
+import math
+
+import xarray as xr
+
+from cellcrawl.command_line.main import CANCELLED, RUN_FAILED
+from cellcrawl.command_line.options import say
+from cellcrawl.simulation.dataset import decode_attribute
+from cellcrawl.simulation.events import MODEL_ENDINGS
+
+_TRANSIENT = 0.5  # part of a run taken as its transient when its motion is summed up
+
+
+def report_run(dataset: xr.Dataset) -> None:
+    """Say how a run ended and how the cell moved."""
+    attributes = dataset.attrs
+    parameters = decode_attribute(dataset, "parameters")
+    diagnostics = decode_attribute(dataset, "diagnostics")
+    say(
+        f"cell     r_on = {parameters['r_on']:g}, zeta_1 = {parameters['zeta_1']:g}, "
+        f"{parameters['elasticity']} tension law, seed {attributes['seed']}"
+    )
+    say(f"run      {attributes['status']}: {attributes['status_message']}")
+    say(
+        f"solver   {attributes['solver']}, {diagnostics['steps']:,} steps, "
+        f"{diagnostics['wall_time']:.2f} s"
+    )
+    _report_motion(dataset)
+
+
+def _report_motion(dataset: xr.Dataset) -> None:
+    from cellcrawl import observables
+
+    if dataset.sizes["time"] < 3:
+        return
+    late = dataset.isel(time=slice(int(_TRANSIENT * dataset.sizes["time"]), None))
+    x, y = late["centroid_x"].values, late["centroid_y"].values
+    speed = observables.speed(late).values
+    tension = late["tension"].values
+    turned = observables.heading(late).values
+    start, end = float(late["time"][0]), float(late["time"][-1])
+    say(
+        f"motion   from t = {start:g} to {end:g}: speed {speed.mean():.3f}, "
+        f"net distance {math.hypot(x[-1] - x[0], y[-1] - y[0]):.2f}, "
+        f"turned {math.degrees(turned[-1] - turned[0]):+.0f} degrees in all, "
+        f"tension {tension.min():.0f} to {tension.max():.0f}"
+    )
+
+
+def exit_code(status: str) -> int:
+    """Return the exit code of a run that ended with ``status``."""
+    if status in MODEL_ENDINGS:
+        return 0
+    return CANCELLED if status == "interrupted" else RUN_FAILED

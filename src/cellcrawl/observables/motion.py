@@ -1,0 +1,169 @@
+"""How the centroid moves: velocity, speed, heading, turning rate."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from cellcrawl.observables.inputs import records_with
+
+AT_REST = 1e-6
+"""A cell slower than this fraction of the run's highest speed has no heading."""
+_ROUNDING = 1e-12
+
+
+def centroid_velocity(dataset: xr.Dataset) -> xr.DataArray:
+    """Return the velocity of the area centroid, from the edge of each record alone.
+
+    ``dc/dt = (1/A) * integral of (x - c) U ds`` with the outward normal velocity ``U``: exact, no
+    difference in time is taken.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        A run.
+
+    Returns
+    -------
+    DataArray, dims (time, component)
+        Components "x" and "y", in R_0 k_off0.
+
+    Raises
+    ------
+    InputError
+        If the dataset is no run or has no records.
+
+    Notes
+    -----
+    It is the velocity of the shape. Membrane or cortex may slide along the edge unseen. At the
+    start of a run the centroid moves because the edge ruffles, long before the cell crawls.
+    """
+    run = records_with(
+        dataset, "x", "y", "normal_velocity", "area", "length", "centroid_x", "centroid_y"
+    )
+    outward = run["normal_velocity"].values
+    per_area = (run["length"] / run["area"]).values
+    velocity = np.stack(
+        [
+            np.mean((run[axis] - run[f"centroid_{axis}"]).values * outward, axis=1) * per_area
+            for axis in ("x", "y")
+        ],
+        axis=1,
+    )
+    return xr.DataArray(
+        velocity,
+        {"time": run["time"], "component": ["x", "y"]},
+        ("time", "component"),
+        "centroid_velocity",
+        {"long_name": "velocity of the centroid", "units": "R_0 k_off0"},
+    )
+
+
+def speed(dataset: xr.Dataset) -> xr.DataArray:
+    """Return the speed of the area centroid.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        A run.
+
+    Returns
+    -------
+    DataArray, dims (time,)
+        In R_0 k_off0.
+
+    Raises
+    ------
+    InputError
+        If the dataset is no run or has no records.
+
+    Notes
+    -----
+    The instantaneous speed. Net displacement over time is smaller for every cell that turns, and
+    speeds from microscopy, taken over long frame intervals, lie in between.
+    """
+    velocity = centroid_velocity(dataset)
+    attributes = {"long_name": "speed of the centroid", "units": "R_0 k_off0"}
+    return xr.DataArray(
+        _size(velocity.values), {"time": dataset["time"]}, ("time",), "speed", attributes
+    )
+
+
+def heading(dataset: xr.Dataset) -> xr.DataArray:
+    """Return the direction in which the centroid moves, as a continuous angle.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        A run.
+
+    Returns
+    -------
+    DataArray, dims (time,)
+        Angle from the x axis, counter-clockwise, in rad; unwrapped, so a full turn adds 2 pi. NaN
+        where the cell is at rest (slower than 1e-6 of its highest speed).
+
+    Raises
+    ------
+    InputError
+        If the dataset is no run or has no records.
+
+    Notes
+    -----
+    Unwrapping takes the shorter way round between records: save often enough that a cell turns
+    less than pi from one to the next. While a cell is nearly at rest the heading is that of its
+    ruffles, and it jumps by pi when a cell stops and backs up. It is the direction of motion, not
+    the axis of the shape.
+    """
+    velocity = centroid_velocity(dataset).values
+    moving = _is_moving(_size(velocity))
+    angle = np.full(moving.shape, np.nan)
+    angle[moving] = np.unwrap(np.arctan2(velocity[moving, 1], velocity[moving, 0]))
+    attributes = {"long_name": "heading of the centroid", "units": "rad"}
+    return xr.DataArray(angle, {"time": dataset["time"]}, ("time",), "heading", attributes)
+
+
+def turning_rate(dataset: xr.Dataset) -> xr.DataArray:
+    """Return how fast the heading turns, positive counter-clockwise (to the left).
+
+    Parameters
+    ----------
+    dataset : Dataset
+        A run of two records or more.
+
+    Returns
+    -------
+    DataArray, dims (time,)
+        In rad k_off0; central differences in time, one-sided at the ends. NaN next to records
+        without a heading.
+
+    Raises
+    ------
+    InputError
+        If the dataset is no run or has fewer than two records.
+
+    Notes
+    -----
+    Turns shorter than two records are smoothed away. While the cell is slow the rate is large and
+    means little: weigh it by the speed, or leave the transient out.
+    """
+    records_with(dataset, at_least=2)
+    angle = heading(dataset)
+    rate = np.gradient(angle.values, angle["time"].values)
+    return (
+        angle.copy(data=rate)
+        .rename("turning_rate")
+        .assign_attrs(long_name="turning rate of the centroid", units="rad k_off0")
+    )
+
+
+def _size(velocity: np.ndarray) -> np.ndarray:
+    """Length of vectors, shape (time, 2)."""
+    size: np.ndarray = np.hypot(velocity[:, 0], velocity[:, 1])
+    return size
+
+
+def _is_moving(speeds: np.ndarray) -> np.ndarray:
+    """Whether each speed, shape (time,), is enough to have a direction."""
+    moving: np.ndarray = speeds > max(AT_REST * float(np.max(speeds)), _ROUNDING)
+    return moving

@@ -1,0 +1,15 @@
+"""Pictures of a run, made to stand in a paper.
+
+Each function takes a run and returns the Axes or the Figure it drew; saving is the caller's:
+``plot.path(ds).figure.savefig("path.pdf")``. Where one axes is enough, ``ax`` draws on your own.
+Nothing is shown, and neither pyplot nor your settings are touched. A field has the same colours in
+every picture and movie.
+"""
+
+from cellcrawl.plot.cell import cell, snapshots
+from cellcrawl.plot.kymograph import kymograph, kymographs
+from cellcrawl.plot.path import path
+from cellcrawl.plot.summary import summary
+from cellcrawl.plot.time_series import time_series
+
+__all__ = ["cell", "kymograph", "kymographs", "path", "snapshots", "summary", "time_series"]

@@ -1,0 +1,70 @@
+"""How a run can end, and the search for the instant at which an edge crosses itself."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from cellcrawl.curve import Crossing, first_crossing
+from cellcrawl.solvers import Breakdown, Solver
+
+STATUSES: Final[dict[str, str]] = {
+    "completed": "reached t_end",
+    "fragmented": "the edge crossed itself: the cell tears, and the model means nothing beyond",
+    "out_of_range": "no off-rate r >= 1 balances the forces somewhere: outside the model",
+    "not_finite": "a value was no longer finite: usually a step that is too long",
+    "step_too_small": "the solver could not meet its tolerance with any reasonable step",
+    "unresolved": "the shape needs more nodes than allowed",
+    "interrupted": "stopped by the user; can be resumed",
+    "running": "not ended: still going, or killed; can be resumed",
+}
+RESUMABLE: Final = ("completed", "interrupted", "running")
+MODEL_ENDINGS: Final = ("completed", "fragmented")  # the run ended as the model allows
+
+_TIME_RESOLUTION = 1e-4
+
+
+class CrossingFound(NamedTuple):
+    """The instant an edge first crosses itself."""
+
+    last_valid: float
+    breakdown: Breakdown
+
+
+def locate_crossing(
+    solver: Solver, checkpoint: dict[str, np.ndarray], valid: float, crossed: float
+) -> CrossingFound:
+    """Narrow down when the edge crosses itself between ``valid`` and ``crossed``.
+
+    ``checkpoint`` is the solver's state when it was valid.
+    The solver ends at the last valid time, from which its frame can be taken.
+    """
+    crossing = crossing_at(solver, crossed)
+    while crossed - valid > _TIME_RESOLUTION:
+        middle = 0.5 * (valid + crossed)
+        solver.restore(checkpoint)
+        broken = solver.advance(middle)
+        found = None if broken else crossing_at(solver, middle)
+        if broken is None and found is None:
+            valid = middle
+        else:
+            crossed, crossing = middle, found or crossing
+    solver.restore(checkpoint)
+    solver.advance(valid)
+    return CrossingFound(valid, Breakdown("fragmented", crossed, _tear(crossing, crossed, solver)))
+
+
+def crossing_at(solver: Solver, time: float) -> Crossing | None:
+    """Return where the edge crosses itself at a time in the solver's last step."""
+    return first_crossing(solver.points(time))
+
+
+def _tear(crossing: Crossing | None, time: float, solver: Solver) -> str:
+    message = f"the edge crosses itself at t = {time:.4f}"
+    if crossing is not None:
+        nodes = len(solver.points(solver.time))
+        first, second = (place / nodes for place in crossing.places)
+        x, y = crossing.point
+        message += f", where s/L = {first:.3f} meets s/L = {second:.3f} at ({x:.3f}, {y:.3f})"
+    return message + ": the cell tears, and the model says nothing about what follows"

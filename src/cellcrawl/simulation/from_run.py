@@ -1,0 +1,59 @@
+"""The state of a saved run as the start of another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from cellcrawl.curve import Curve, fourier
+from cellcrawl.errors import InputError
+from cellcrawl.parameters import Parameters
+from cellcrawl.simulation.storage import open_run
+from cellcrawl.starts import CellState
+from cellcrawl.validation import whole_number
+
+
+@dataclass(frozen=True, eq=False)
+class FromRun:
+    """A state of a saved run as the first state of another; immutable.
+
+    Parameters
+    ----------
+    run : Dataset, str or Path
+        A run, or the file that holds it.
+    record : int
+        Which saved time; the last unless given.
+    """
+
+    run: xr.Dataset | str | Path
+    record: int = -1
+
+    def state(self, parameters: Parameters, nodes: int) -> CellState:
+        """Return the saved state on ``nodes`` nodes; its tension is kept."""
+        dataset = self._dataset()
+        count = dataset.sizes["time"]
+        record = whole_number("record", self.record, -count, count - 1)
+        frame = dataset.isel(time=record).load()
+        origin = np.array([frame["x"][0].item(), frame["y"][0].item()])
+        curve = Curve(frame["theta"].values, frame["length"].item(), origin)
+        bound = frame["bound_fraction"].values
+        if nodes != curve.nodes:
+            curve = curve.resampled(nodes)
+            bound = np.clip(fourier.resample(bound, nodes), 0.0, 1.0)
+        return CellState(curve, bound, frame["tension"].item())
+
+    def describe(self) -> dict[str, Any]:
+        """Return this start as plain values for JSON."""
+        source = self.run if isinstance(self.run, (str, Path)) else "a dataset in memory"
+        return {"kind": "FromRun", "run": str(source), "record": self.record}
+
+    def _dataset(self) -> xr.Dataset:
+        if isinstance(self.run, xr.Dataset):
+            return self.run
+        if not isinstance(self.run, (str, Path)):
+            raise InputError(f"FromRun needs a Dataset or a file, not {type(self.run).__name__}")
+        return open_run(self.run)

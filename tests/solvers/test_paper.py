@@ -1,0 +1,163 @@
+"""The paper's scheme: its orders, its invariants, its symmetries, its targets."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import cellcrawl as cc
+from cellcrawl.physics import laws
+from tests.conftest import Given, check_start, reflected, rotated, shifted
+
+# MODEL.md section 6: (26, 600), printed law, check start, t = 2, converged.
+TARGET = {"length": 6.609484, "tension": 912.998, "area": 3.165835}
+CENTROID = (0.458285, 0.030681)
+
+
+def last(parameters: cc.Parameters, nodes: int, dt: float, t_end: float = 2.0) -> xr.Dataset:
+    dataset = cc.simulate(
+        parameters,
+        t_end,
+        start=check_start(parameters),
+        solver="paper",
+        nodes=nodes,
+        dt=dt,
+        save_every=t_end,
+    )
+    assert dataset.attrs["status"] == "completed"
+    return dataset.isel(time=-1)
+
+
+def summary(frame: xr.Dataset) -> np.ndarray:
+    names = ["length", "tension", "area", "centroid_x", "centroid_y"]
+    return np.array([frame[name].item() for name in names])
+
+
+def reference() -> np.ndarray:
+    return np.array([*TARGET.values(), *CENTROID])
+
+
+@pytest.mark.parametrize(("nodes", "dt", "within"), [(2000, 1e-3, 3e-3), (4000, 1e-4, 3e-4)])
+def test_check_start_agrees_with_the_converged_values(zigzag_parameters, nodes, dt, within):
+    error = np.abs(summary(last(zigzag_parameters, nodes, dt)) - reference())
+    scale = np.array([*TARGET.values(), 1.0, 1.0])
+    assert np.all(error < within * scale)
+
+
+def test_first_order_in_time(zigzag_parameters):
+    coarse, middle, fine = (
+        summary(last(zigzag_parameters, 400, dt)) for dt in (1e-3, 5e-4, 2.5e-4)
+    )
+    order = np.log2(np.abs((coarse - middle) / (middle - fine)))
+    # The y of the centroid changes too little with the step to show an order.
+    assert np.all(np.abs(order[:4] - 1.0) < 0.1)
+
+
+def test_second_order_in_space(zigzag_parameters):
+    coarse, middle, fine = (summary(last(zigzag_parameters, n, 5e-4)) for n in (300, 600, 1200))
+    order = np.log2(np.abs((coarse - middle) / (middle - fine)))
+    assert np.all(np.abs(order - 2.0) < 0.1)
+
+
+def test_extrapolation_in_time_and_space_reaches_the_converged_values(zigzag_parameters):
+    first, second, third = (summary(last(zigzag_parameters, 1000, dt)) for dt in (8e-4, 4e-4, 2e-4))
+    in_time = (first - 6.0 * second + 8.0 * third) / 3.0
+    coarse, fine = (summary(last(zigzag_parameters, n, 4e-4)) for n in (500, 1000))
+    extrapolated = in_time + (fine - coarse) / 3.0
+    assert np.all(np.abs(extrapolated / reference() - 1.0)[:3] < 3e-6)
+    assert np.all(np.abs(extrapolated - reference())[3:] < 5e-6)
+
+
+@pytest.mark.parametrize("elasticity", ["printed", "consistent"])
+def test_uniform_circle_stays_uniform(elasticity):
+    parameters = cc.Parameters(elasticity=elasticity)
+    dataset = cc.simulate(parameters, 0.5, start=cc.PerturbedCircle(), solver="paper", nodes=200)
+    assert np.ptp(dataset["bound_fraction"].values) < 1e-9
+    assert np.abs(dataset["off_rate"].values - parameters.r_p).max() < 1e-6
+    assert np.abs(dataset["tension"].values / parameters.sigma_bar - 1.0).max() < 1e-9
+
+
+def test_tension_keeps_step_with_area(zigzag_parameters):
+    dataset = cc.simulate(zigzag_parameters, 5.0, solver="paper", nodes=400)
+    stretched = zigzag_parameters.tension_rate * (dataset["area"] - dataset["area"][0])
+    drift = dataset["tension"] - dataset["tension"][0] - stretched
+    assert np.abs(drift).max() < 1e-9
+
+
+def test_forces_balance_at_every_node(zigzag_parameters):
+    ds = cc.simulate(zigzag_parameters, 5.0, solver="paper", nodes=400)
+    p = zigzag_parameters
+    r, n = ds["off_rate"].values, ds["bound_fraction"].values
+    pull = p.sigma_c + ds["tension"].values[:, None] * (1.0 + p.h * ds["curvature"].values)
+    assert np.abs(r * np.log(r) + p.zeta_1 * n * np.log(r) - pull).max() < 1e-10
+    assert np.abs(ds["friction"].values - pull).max() < 1e-10
+    speed = p.epsilon * (p.v_p - laws.retrograde_velocity.py_func(np.log(r), r))
+    assert np.abs(ds["normal_velocity"].values - speed).max() < 1e-12
+    assert r.min() >= 1.0
+
+
+def test_bound_fraction_stays_a_fraction():
+    for r_on, zeta_1 in [(16, 600), (200, 2000), (1, 0)]:
+        dataset = cc.simulate(
+            cc.Parameters(r_on=r_on, zeta_1=zeta_1), 3.0, solver="paper", nodes=200
+        )
+        assert 0.0 <= dataset["bound_fraction"].min() <= dataset["bound_fraction"].max() <= 1.0
+
+
+@pytest.mark.parametrize("angle", [0.7, math.pi / 2, 4.0])
+def test_a_turned_start_gives_the_turned_run(zigzag_parameters, angle):
+    state = check_start(zigzag_parameters).state(zigzag_parameters, 300)
+    plain, turned = (run(zigzag_parameters, s) for s in (state, rotated(state, angle)))
+    c, s = math.cos(angle), math.sin(angle)
+    assert np.allclose(turned["x"], c * plain["x"] - s * plain["y"], atol=1e-9)
+    assert np.allclose(turned["y"], s * plain["x"] + c * plain["y"], atol=1e-9)
+    assert np.allclose(turned["bound_fraction"], plain["bound_fraction"], atol=1e-9)
+
+
+def test_a_mirrored_start_gives_the_mirrored_run(zigzag_parameters):
+    state = check_start(zigzag_parameters).state(zigzag_parameters, 300)
+    plain, mirrored = (run(zigzag_parameters, s) for s in (state, reflected(state)))
+    back = np.roll(np.arange(300)[::-1], 1)
+    assert np.allclose(mirrored["x"].values, plain["x"].values[back], atol=1e-9)
+    assert np.allclose(mirrored["y"].values, -plain["y"].values[back], atol=1e-9)
+    assert np.allclose(mirrored["tension"], plain["tension"], atol=1e-6)
+
+
+def test_the_choice_of_node_0_changes_the_run_only_within_the_scheme_error(zigzag_parameters):
+    # Node 0 moves along its normal and carries the others, so a shift is an error of the scheme.
+    differences = []
+    for nodes in (200, 400):
+        state = check_start(zigzag_parameters).state(zigzag_parameters, nodes)
+        plain, moved = (run(zigzag_parameters, s) for s in (state, shifted(state, nodes // 3)))
+        gap = np.hypot(
+            plain["centroid_x"] - moved["centroid_x"], plain["centroid_y"] - moved["centroid_y"]
+        )
+        differences.append(float(gap) + abs(float(plain["length"] - moved["length"])))
+    assert differences[1] < 1e-3
+    assert differences[1] < differences[0]
+
+
+def test_consistent_law_refuses_the_published_step_and_names_one_that_works():
+    parameters = cc.Parameters(r_on=26, elasticity="consistent")
+    with pytest.raises(cc.InputError, match=r"dt = 0.001 is unstable.*tension.*works") as caught:
+        cc.simulate(parameters, 1.0, solver="paper", nodes=200, dt=1e-3)
+    advised = float(str(caught.value).split("dt = ")[-1].split()[0])
+    dataset = cc.simulate(parameters, 3.0, solver="paper", nodes=200, dt=advised)
+    assert dataset.attrs["status"] == "completed"
+    # The stiff tension mode decays instead of chattering: the tension is smooth from save to save.
+    assert np.abs(np.diff(dataset["tension"].values, 2)).max() < 10.0
+
+
+def test_too_long_a_step_for_the_nodes_is_refused(zigzag_parameters):
+    with pytest.raises(cc.InputError, match=r"unstable.*shape on 8000 nodes.*works"):
+        cc.simulate(zigzag_parameters, 1.0, solver="paper", nodes=8000, dt=1e-3)
+
+
+def run(parameters: cc.Parameters, state: cc.CellState) -> xr.Dataset:
+    nodes = state.curve.nodes
+    return cc.simulate(
+        parameters, 1.0, start=Given(state), solver="paper", nodes=nodes, dt=5e-4
+    ).isel(time=-1)
