@@ -178,7 +178,7 @@ class AdaptiveSolver(Solver):
     def _begin(self, start: CellState) -> None:
         curve = start.curve
         waves = resolution.spectrum(curve.theta - layout.winding(curve.nodes), start.bound_fraction)
-        allowed = _grid_tolerance(self._rtol)
+        allowed = resolution.LEAST_ALLOWANCE * _grid_tolerance(self._rtol)
         if resolution.missed_on(waves, curve.nodes) > 3.0 * allowed:
             raise InputError(
                 f"the start is not resolved on {curve.nodes} nodes at rtol = {self._rtol:g}: "
@@ -230,7 +230,7 @@ class AdaptiveSolver(Solver):
             return False
         self._states[drive.CURRENT_RATES] = trial
         self._control[drive.RADIUS], self._control[drive.TENSION_DECAY] = stiffness(
-            current, self._log_rate, edge
+            current, self._log_rate, edge, self._work
         )
         self._choose_order()
         return True
@@ -270,14 +270,14 @@ class AdaptiveSolver(Solver):
     def _local_tolerance(self) -> float:
         """Local error that leaves a global error of about ``rtol`` at t = 5 (measured)."""
         if self._counters[drive.ORDER] == chebyshev.ORDER:
-            return float((5.0 * self._rtol) ** 1.5)
+            return float((12.0 * self._rtol) ** 1.5)
         return float(10.0 * self._rtol * (self._rtol / 1e-4) ** 0.15)
 
     def _fit_grid(self) -> Breakdown | None:
         """Go on with as many nodes as the spectrum asks for."""
         state = self._states[drive.CURRENT]
         nodes = layout.nodes_of(state)
-        allowed = _grid_tolerance(self._rtol)
+        allowed = resolution.allowance(_grid_tolerance(self._rtol), self._control[drive.CONTRAST])
         waves = resolution.spectrum(layout.angle(state), layout.bound(state))
         self._counters[drive.CHECK_DUE] = 0
         wanted = resolution.wanted_nodes(waves, nodes, allowed, self._min_nodes, self._max_nodes)
@@ -317,5 +317,5 @@ class AdaptiveSolver(Solver):
 
 
 def _grid_tolerance(rtol: float) -> float:
-    """Part of the slopes a grid may miss for a global error of about ``rtol`` (measured)."""
-    return float(0.3 * (28.6 * rtol) ** 0.625)
+    """Part of the slopes of a formed cell that a grid may miss for an error of ``rtol`` (measured)."""
+    return float((28.6 * rtol) ** 0.625)

@@ -13,7 +13,7 @@ import numpy as np
 from cellcrawl._compile import kernel
 from cellcrawl.solvers import chebyshev, stabilised
 from cellcrawl.solvers.adaptive_rates import stiffness
-from cellcrawl.solvers.resolution import COARSEN, COARSER_MISSES, missed
+from cellcrawl.solvers.resolution import COARSEN, COARSER_MISSES, allowance, missed
 
 # rows of `states`; the last step went from PREVIOUS to CURRENT
 PREVIOUS, PREVIOUS_RATES, CURRENT, CURRENT_RATES, TRIAL, TRIAL_RATES = range(6)
@@ -42,6 +42,7 @@ _AIM = 0.4  # error asked of a step, in tolerances
 _RADIUS_MARGIN = 1.05
 _SHRINK_ON_FAILURE = 0.25
 HOPELESS: Final = 10.0  # a full grid that misses this many times what is allowed ends the run
+_LOOK_EVERY = 2  # steps between two looks at the resolution
 _COARSEN_EVERY = 10
 _LEAST_CONTRAST = 0.01  # waves smaller than this are no longer followed to their own size
 
@@ -149,17 +150,29 @@ def run(
         control[TIME] = end if lands else control[TIME] + h
         counters[STEPS] += 1
         counters[FAILED_IN_A_ROW] = 0
-        states[PREVIOUS:CURRENT] = states[CURRENT:TRIAL]
-        states[CURRENT:TRIAL] = states[TRIAL : TRIAL + 2]
-        control[RADIUS], control[TENSION_DECAY] = stiffness(states[CURRENT], y, edges[-1])
+        for i in range(states.shape[1]):
+            states[PREVIOUS, i] = states[CURRENT, i]
+            states[PREVIOUS_RATES, i] = states[CURRENT_RATES, i]
+            states[CURRENT, i] = states[TRIAL, i]
+            states[CURRENT_RATES, i] = states[TRIAL_RATES, i]
+        control[RADIUS], control[TENSION_DECAY] = stiffness(
+            states[CURRENT], y, edges[-1], work
+        )
+        if counters[STEPS] % _LOOK_EVERY != 0:
+            if lands:
+                return AT_BREAK
+            if ramping:
+                return RETRY
+            continue
         misses, control[CONTRAST] = missed(states[CURRENT], y.size, work)
         control[MOST_MISSED] = max(control[MOST_MISSED], misses)
-        if misses > allowed and y.size < nodes_range[1]:
+        most = allowance(allowed, control[CONTRAST])
+        if misses > most and y.size < nodes_range[1]:
             counters[CHECK_DUE] = 1
         elif misses > HOPELESS * allowed:
             return UNRESOLVED
         elif counters[STEPS] % _COARSEN_EVERY == 0 and y.size > nodes_range[0]:
-            counters[CHECK_DUE] = 1 if COARSER_MISSES * misses < COARSEN * allowed else 0
+            counters[CHECK_DUE] = 1 if COARSER_MISSES * misses < COARSEN * most else 0
         if lands:
             return AT_BREAK
         if ramping:

@@ -32,8 +32,10 @@ from cellcrawl.solvers.staggered import (
     difference_ahead,
     difference_behind,
     fill_halo,
+    largest,
     mean_ahead,
     mean_behind,
+    running_sum,
     second_difference,
     total,
 )
@@ -152,11 +154,7 @@ def rates(
     for i in range(np.uint64(nodes)):
         j = i + _HALO
         slide[j] = spacing * (mean_stretch - cell_mean(stretch, j))
-    running = 0.0
-    for i in range(HALO, HALO + nodes):
-        step = slide[i]
-        slide[i] = running
-        running += step
+    running_sum(slide, nodes)
     fill_halo(slide, nodes)
     diffusivity = edge[2]
     for i in range(np.uint64(nodes)):
@@ -177,7 +175,9 @@ def rates(
 
 
 @kernel
-def stiffness(state: np.ndarray, y: np.ndarray, edge: np.ndarray) -> tuple[float, float]:
+def stiffness(
+    state: np.ndarray, y: np.ndarray, edge: np.ndarray, work: np.ndarray
+) -> tuple[float, float]:
     """Bound on the fastest decay, and the decay of the tension by itself.
 
     Diffusion and shape, or the tension, each with the reaction. ``y`` must belong to ``state``.
@@ -186,17 +186,19 @@ def stiffness(state: np.ndarray, y: np.ndarray, edge: np.ndarray) -> tuple[float
     span = nodes + 2 * HALO
     n, scalars = state[span : 2 * span], state[2 * span :]
     per_spacing = nodes / scalars[LENGTH]
-    sigma = abs(scalars[TENSION])
-    reaction = diffusion = shape = yielding = 0.0
-    for i in range(nodes):
+    r_on, zeta_1, epsilon, h = edge[0], edge[1], edge[3], edge[4]
+    reaction, yielding, shape, diffusion = work[0], work[1], work[2], work[3]
+    for i in range(np.uint64(nodes)):
+        j = i + _HALO
         r = exponential(y[i])
-        slope = friction_slope(y[i], r, n[HALO + i], edge[1, i])
+        slope = friction_slope(y[i], r, n[j], zeta_1[i])
         share = r * (1.0 + y[i]) / slope  # d(r log r) / dF: how much of a force becomes flow
-        slip = n[HALO + i] * r * edge[1, i] * y[i] / slope  # fewer linkers, faster unbinding
-        reaction = max(reaction, abs(edge[0, i] + r - slip))
-        diffusion = max(diffusion, edge[2, i])
-        shape = max(shape, edge[3, i] * edge[4, i] * share)
-        yielding += edge[3, i] * share
-    grid = diffusion * SECOND_DIFFERENCE_PEAK + shape * sigma * DIFFERENCE_PEAK**2
-    tension = edge[TENSION_RATE, 0] * yielding / per_spacing
-    return max(grid * per_spacing**2, tension) + reaction, tension
+        slip = n[j] * r * zeta_1[i] * y[i] / slope  # fewer linkers, faster unbinding
+        reaction[j] = abs(r_on[i] + r - slip)
+        yielding[j] = epsilon[i] * share
+        shape[j] = epsilon[i] * share * h[i]
+        diffusion[j] = edge[2, i]
+    grid = largest(diffusion, nodes) * SECOND_DIFFERENCE_PEAK
+    grid += largest(shape, nodes) * abs(scalars[TENSION]) * DIFFERENCE_PEAK**2
+    tension = edge[TENSION_RATE, 0] * total(yielding, nodes) / per_spacing
+    return max(grid * per_spacing**2, tension) + largest(reaction, nodes), tension

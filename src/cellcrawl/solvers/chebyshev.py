@@ -82,9 +82,12 @@ def step(
     for k in range(size):
         before[k] = start[k]
         now[k] = start[k] + first * f0[k]
-    for j in range(1, degree):
-        if not stage_rates(recurrence[j, 5], now, f, y, edges, mixed, work):
+    for j in range(1, degree + 1):
+        part = recurrence[j, 5] if j < degree else 1.0
+        if not stage_rates(part, now, f, y, edges, mixed, work):
             return False, np.inf
+        if j == degree:
+            break
         a0, a1, a2 = recurrence[j, 0], recurrence[j, 1], recurrence[j, 2]
         b0, b1 = h * recurrence[j, 3], h * recurrence[j, 4]
         for k in range(size):
@@ -92,8 +95,6 @@ def step(
         now, before = before, now
     for k in range(size):
         end[k] = now[k]
-    if not stage_rates(1.0, end, f, y, edges, mixed, work):
-        return False, np.inf
     for k in range(size):
         before[k] = 0.8 * (start[k] - end[k]) + 0.4 * h * (f0[k] + f[k])
     return True, relative_size(before, end, y.size, relief, contrast)

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.solvers.staggered import HALO, difference_ahead, fill_halo
+from cellcrawl.solvers.staggered import HALO, difference_ahead, fill_halo, sum_of_squares
 
 NODE_COUNTS: Final[tuple[int, ...]] = (
     *(part * 16 * 2**k for k in range(6) for part in (4, 5, 6, 7)),
@@ -25,6 +25,7 @@ NODE_COUNTS: Final[tuple[int, ...]] = (
 )
 COARSEN: Final = 0.4  # go to a coarser grid only if it misses this part of what is allowed
 COARSER_MISSES: Final = 15.0  # about how much more the next coarser grid misses
+LEAST_ALLOWANCE: Final = 0.2
 _REFINE = 1.2  # least factor of a refinement
 _SCALE = 2.2
 _DOUBLE_DIFFERENCES = 5
@@ -46,20 +47,24 @@ def missed(state: np.ndarray, nodes: int, work: np.ndarray) -> tuple[float, floa
         now, then = work[0], work[1]
         for i in range(np.uint64(nodes)):
             now[i + _HALO] = difference_ahead(values, i + _HALO)
-        for i in range(HALO, HALO + nodes):
-            slopes += now[i] * now[i]
+        slopes += sum_of_squares(now, nodes)
         for _ in range(_DOUBLE_DIFFERENCES):
             fill_halo(now, nodes)
             for i in range(np.uint64(nodes)):
                 j = i + _HALO
                 then[j] = (now[j + _1] - now[j]) - (now[j] - now[j - _1])
             now, then = then, now
-        for i in range(HALO, HALO + nodes):
-            square += now[i] * now[i]
+        square += sum_of_squares(now, nodes)
     slope = nodes / (2.0 * math.pi)
     size = slope * math.sqrt(slopes / nodes)
     lost = slope * math.sqrt(square / nodes) / _SCALE ** (2 * _DOUBLE_DIFFERENCES)
     return lost / (size + _FLAT), size
+
+
+@kernel
+def allowance(allowed: float, contrast: float) -> float:
+    """What may be missed now: less while the waves are small, for their errors grow with them."""
+    return allowed * min(max(contrast, LEAST_ALLOWANCE), 1.0)
 
 
 def spectrum(angle: np.ndarray, bound: np.ndarray) -> np.ndarray:

@@ -18,8 +18,16 @@ from cellcrawl.solvers.step_error import relative_size
 
 ORDER: Final = 4
 START, START_RATES, END, END_RATES = 2, 3, 4, 5  # rows of `states`
-BEFORE, NOW = 6, 7  # and then the rates of the last four stages
+BEFORE, NOW, FIRST_OF_FOUR = 6, 7, 8  # the last: rates of the last four stages
+_STAGE_TIMES: Final = 15  # where they begin in `finish`
 STATE_ROWS: Final = 12
+
+
+@kernel
+def add(part: float, values: np.ndarray, out: np.ndarray) -> None:
+    """Add ``part`` of ``values`` to ``out``."""
+    for k in range(out.size):
+        out[k] += part * values[k]
 
 
 @kernel
@@ -42,48 +50,35 @@ def step(
     ``relief`` lessens the error of a tension that decays within the step anyway;
     ``contrast`` is the size of the waves on the edge.
     """
-    start, end = states[START], states[END]
+    start, f0, end, f = states[START], states[START_RATES], states[END], states[END_RATES]
     now, before = states[NOW], states[BEFORE]
-    f = states[END_RATES]
-    f1, f2, f3, f4 = states[8], states[9], states[10], states[11]
     size = start.size
     first = h * recurrence[0, 0]
-    f0 = states[START_RATES]
     for k in range(size):
         before[k] = start[k]
         now[k] = start[k] + first * f0[k]
     for j in range(1, degree - 4):
-        mu, nu, kappa = h * recurrence[j, 0], recurrence[j, 1], recurrence[j, 2]
         if not stage_rates(recurrence[j, 3], now, f, y, edges, mixed, work):
             return False, np.inf
+        mu, nu, kappa = h * recurrence[j, 0], recurrence[j, 1], recurrence[j, 2]
         for k in range(size):
             before[k] = mu * f[k] + nu * now[k] + kappa * before[k]
         now, before = before, now
-    stage = before
-    if not stage_rates(finish[15], now, f1, y, edges, mixed, work):
-        return False, np.inf
-    a21 = h * finish[0]
+    weight = 0  # of `finish`: a21, a31, a32, a41, a42, a43, b1..b4, e1..e5, c of four stages
+    for stage in range(5):
+        for k in range(size):
+            end[k] = now[k]
+        for j in range(stage):
+            add(h * finish[weight], states[FIRST_OF_FOUR + j], end)
+            weight += 1
+        part = finish[_STAGE_TIMES + stage] if stage < 4 else 1.0
+        out = states[FIRST_OF_FOUR + stage] if stage < 4 else f
+        if not stage_rates(part, end, out, y, edges, mixed, work):
+            return False, np.inf
+    error = before
+    e5 = h * finish[weight + 4]
     for k in range(size):
-        stage[k] = now[k] + a21 * f1[k]
-    if not stage_rates(finish[16], stage, f2, y, edges, mixed, work):
-        return False, np.inf
-    a31, a32 = h * finish[1], h * finish[2]
-    for k in range(size):
-        stage[k] = now[k] + a31 * f1[k] + a32 * f2[k]
-    if not stage_rates(finish[17], stage, f3, y, edges, mixed, work):
-        return False, np.inf
-    a41, a42, a43 = h * finish[3], h * finish[4], h * finish[5]
-    for k in range(size):
-        stage[k] = now[k] + a41 * f1[k] + a42 * f2[k] + a43 * f3[k]
-    if not stage_rates(finish[18], stage, f4, y, edges, mixed, work):
-        return False, np.inf
-    b1, b2, b3, b4 = h * finish[6], h * finish[7], h * finish[8], h * finish[9]
-    for k in range(size):
-        end[k] = now[k] + b1 * f1[k] + b2 * f2[k] + b3 * f3[k] + b4 * f4[k]
-    if not stage_rates(1.0, end, f, y, edges, mixed, work):
-        return False, np.inf
-    e1, e2, e3, e4 = h * finish[10], h * finish[11], h * finish[12], h * finish[13]
-    e5 = h * finish[14]
-    for k in range(size):
-        stage[k] = e1 * f1[k] + e2 * f2[k] + e3 * f3[k] + e4 * f4[k] + e5 * f[k]
-    return True, relative_size(stage, end, y.size, relief, contrast)
+        error[k] = e5 * f[k]
+    for j in range(4):
+        add(h * finish[weight + j], states[FIRST_OF_FOUR + j], error)
+    return True, relative_size(error, end, y.size, relief, contrast)

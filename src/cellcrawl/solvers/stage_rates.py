@@ -22,7 +22,14 @@ def mix(values: np.ndarray, part: float, out: np.ndarray) -> np.ndarray:
     w1 = third * (third - 2.0) * (third - 3.0) / 2.0
     w2 = -third * (third - 1.0) * (third - 3.0) / 2.0
     w3 = third * (third - 1.0) * (third - 2.0) / 6.0
-    out[:] = w0 * values[0] + w1 * values[1] + w2 * values[2] + w3 * values[3]
+    for row in range(out.shape[0]):
+        for i in range(out.shape[1]):
+            out[row, i] = (
+                w0 * values[0, row, i]
+                + w1 * values[1, row, i]
+                + w2 * values[2, row, i]
+                + w3 * values[3, row, i]
+            )
     return out
 
 

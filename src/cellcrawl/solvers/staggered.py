@@ -167,3 +167,50 @@ def total(a: np.ndarray, nodes: int) -> float:
         s6 += a[i + 6]
         s7 += a[i + 7]
     return ((s0 + s1) + (s2 + s3)) + ((s4 + s5) + (s6 + s7))
+
+
+@kernel
+def sum_of_squares(a: np.ndarray, nodes: int) -> float:
+    """Sum of squares over the nodes, like `total`."""
+    s0 = s1 = s2 = s3 = s4 = s5 = s6 = s7 = 0.0
+    for i in range(HALO, HALO + nodes, 8):
+        s0 += a[i] * a[i]
+        s1 += a[i + 1] * a[i + 1]
+        s2 += a[i + 2] * a[i + 2]
+        s3 += a[i + 3] * a[i + 3]
+        s4 += a[i + 4] * a[i + 4]
+        s5 += a[i + 5] * a[i + 5]
+        s6 += a[i + 6] * a[i + 6]
+        s7 += a[i + 7] * a[i + 7]
+    return ((s0 + s1) + (s2 + s3)) + ((s4 + s5) + (s6 + s7))
+
+
+@kernel
+def largest(a: np.ndarray, nodes: int) -> float:
+    """Largest entry over the nodes, none of them negative, like `total`."""
+    s0 = s1 = s2 = s3 = 0.0
+    for i in range(HALO, HALO + nodes, 4):
+        s0 = a[i] if a[i] > s0 else s0
+        s1 = a[i + 1] if a[i + 1] > s1 else s1
+        s2 = a[i + 2] if a[i + 2] > s2 else s2
+        s3 = a[i + 3] if a[i + 3] > s3 else s3
+    return max(max(s0, s1), max(s2, s3))
+
+
+@kernel
+def running_sum(a: np.ndarray, nodes: int) -> None:
+    """Replace every entry by the sum of those before it, in four parts at once."""
+    part = nodes // 4
+    s0 = s1 = s2 = s3 = 0.0
+    for i in range(HALO, HALO + part):
+        step0, step1, step2, step3 = a[i], a[i + part], a[i + 2 * part], a[i + 3 * part]
+        a[i], a[i + part], a[i + 2 * part], a[i + 3 * part] = s0, s1, s2, s3
+        s0 += step0
+        s1 += step1
+        s2 += step2
+        s3 += step3
+    for quarter in range(1, 4):
+        before = s0 if quarter == 1 else s0 + s1 if quarter == 2 else s0 + s1 + s2
+        first = HALO + quarter * part
+        for i in range(part):
+            a[first + i] += before

@@ -8,7 +8,7 @@ import numpy as np
 
 from cellcrawl._compile import kernel
 from cellcrawl.solvers.adaptive_rates import AREA, LENGTH, ORIGIN_X, ORIGIN_Y, TENSION
-from cellcrawl.solvers.staggered import HALO
+from cellcrawl.solvers.staggered import HALO, sum_of_squares
 
 _TENSION_SCALE = 100.0
 
@@ -24,13 +24,8 @@ def relative_size(
     error is multiplied by ``relief``. Infinity when it is not a number.
     """
     span = nodes + 2 * HALO
-    s0 = s1 = s2 = s3 = 0.0
-    for i in range(HALO, HALO + nodes, 4):
-        s0 += error[i] ** 2 + error[span + i] ** 2
-        s1 += error[i + 1] ** 2 + error[span + i + 1] ** 2
-        s2 += error[i + 2] ** 2 + error[span + i + 2] ** 2
-        s3 += error[i + 3] ** 2 + error[span + i + 3] ** 2
-    square = ((s0 + s1) + (s2 + s3)) / (nodes * contrast**2)
+    square = sum_of_squares(error[:span], nodes) + sum_of_squares(error[span:], nodes)
+    square /= nodes * contrast**2
     e, u = error[2 * span :], state[2 * span :]
     square += (e[LENGTH] / u[LENGTH]) ** 2 + (e[AREA] / u[AREA]) ** 2
     square += (relief * e[TENSION] / (abs(u[TENSION]) + _TENSION_SCALE)) ** 2
