@@ -270,7 +270,7 @@ class AdaptiveSolver(Solver):
     def _local_tolerance(self) -> float:
         """Local error that leaves a global error of about ``rtol`` at t = 5 (measured)."""
         if self._counters[drive.ORDER] == chebyshev.ORDER:
-            return float((12.0 * self._rtol) ** 1.5)
+            return float((8.0 * self._rtol) ** 1.5)
         return float(10.0 * self._rtol * (self._rtol / 1e-4) ** 0.15)
 
     def _fit_grid(self) -> Breakdown | None:
@@ -318,4 +318,4 @@ class AdaptiveSolver(Solver):
 
 def _grid_tolerance(rtol: float) -> float:
     """Part of the slopes of a formed cell that a grid may miss for an error of ``rtol`` (measured)."""
-    return float((28.6 * rtol) ** 0.625)
+    return float(0.5 * (28.6 * rtol) ** 0.625)
