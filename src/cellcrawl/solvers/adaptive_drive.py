@@ -92,7 +92,7 @@ def run(
     # a second-order step's estimate is of third order: take the power that goes as its square
     power = 2.0 / 3.0 if order == chebyshev.ORDER else 1.0
     amplified = 0.05 if order == chebyshev.ORDER else 0.002  # into the error at t = 5
-    weight = 1.0 if order == chebyshev.ORDER else 20.0
+    weight = 1.0 if order == chebyshev.ORDER else 6.0
     tried = 0
     while control[TIME] < target:
         if tried == most_steps:
@@ -155,9 +155,7 @@ def run(
             states[PREVIOUS_RATES, i] = states[CURRENT_RATES, i]
             states[CURRENT, i] = states[TRIAL, i]
             states[CURRENT_RATES, i] = states[TRIAL_RATES, i]
-        control[RADIUS], control[TENSION_DECAY] = stiffness(
-            states[CURRENT], y, edges[-1], work
-        )
+        control[RADIUS], control[TENSION_DECAY] = stiffness(states[CURRENT], y, edges[-1], work)
         if counters[STEPS] % _LOOK_EVERY != 0:
             if lands:
                 return AT_BREAK

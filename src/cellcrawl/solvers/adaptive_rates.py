@@ -106,7 +106,7 @@ def velocities(
         second = halley_step(near, r, n[j], zeta_1[i], force)
         near = near + second
         rate[i] = r * (1.0 + second * (1.0 + 0.5 * second))
-        good = (abs(first) < _NEAR) & (abs(second) < _SETTLED) & (near >= 0.0)
+        good = (abs(first) < _NEAR) & (abs(second) < _SETTLED) & (near >= 0.0) & (r > 0.5)
         unsettled += 0 if good else 1
         y[i] = near
     if unsettled > 0:
