@@ -320,5 +320,5 @@ class AdaptiveSolver(Solver):
 
 
 def _grid_tolerance(rtol: float) -> float:
-    """Part of the slopes of a formed cell that a grid may miss for an error of ``rtol`` (measured)."""
-    return float(0.45 * (28.6 * rtol) ** 0.625)
+    """Part of slopes of size 1 that a grid may miss for an error of ``rtol`` (measured)."""
+    return float(0.32 * (28.6 * rtol) ** 0.625)

@@ -1,7 +1,7 @@
 """Rates of change of the whole state on the staggered grid, and how stiff they are.
 
-A state is one flat array: ``w = theta - winding`` at the nodes and ``n`` at the midpoints, each with
-its halo, then the scalars length, tension, area and position of node 0. Kernels use the paper's
+A state is one flat array: ``w = theta - winding`` at the nodes and ``n`` at the midpoints, both
+with halos, then the scalars length, tension, area and position of node 0. Kernels use the paper's
 letters: ``U`` edge velocity, ``T`` tangential velocity of the nodes, ``y = log r``.
 """
 
@@ -85,7 +85,8 @@ def velocities(
     """Solve the force balance at the midpoints; False where it has no root.
 
     Leaves ``log r`` in ``y``, shape (nodes,), and in the rows of ``work``, which have halos: ``U``,
-    ``kappa U`` and ``r_on (1 - n) - r n``. Row `RATE` must hold ``exp(y)``; `stiffness` puts it there.
+    ``kappa U`` and ``r_on (1 - n) - r n``. Row `RATE` must hold ``exp(y)``, where `stiffness` puts
+    it.
     """
     nodes = y.size
     per_spacing = nodes / length
