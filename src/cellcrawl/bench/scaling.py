@@ -83,7 +83,10 @@ def plot(nodes: list[NodeCost], streams: list[Stream]) -> Figure:
         rows = [row for row in nodes if row.solver == name]
         what = "right-hand side" if name == "adaptive" else "step"
         left.loglog(
-            [r.nodes for r in rows], [r.microseconds for r in rows], "o-", label=f"{name}, one {what}"
+            [r.nodes for r in rows],
+            [r.microseconds for r in rows],
+            "o-",
+            label=f"{name}, one {what}",
         )
     left.set(xlabel="nodes", ylabel="time (µs)")
     left.legend(fontsize=7)
