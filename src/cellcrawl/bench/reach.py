@@ -87,7 +87,7 @@ def _against_refined(case: Case) -> Target:
     _, fast, _ = timed(lambda: _solve("adaptive", case))
     nodes, dt, miss, slow = 2000, 1e-3, math.inf, math.nan
     while miss > 1e-4 and dt > 1e-6:
-        found, slow, _ = timed(lambda: _solve("paper", case, nodes=nodes, dt=dt))
+        found, slow, _ = timed(lambda step=dt: _solve("paper", case, nodes=nodes, dt=step))
         miss = error(found, truth)
         dt /= max(2.0, min(miss / 1e-4, 8.0))
     return Target(

@@ -23,7 +23,8 @@ start = time.perf_counter()
 run = cc.simulate(cc.Parameters(r_on=26), float(sys.argv[2]), output=sys.argv[1])
 seconds = time.perf_counter() - start
 assert run.attrs["status"] == "completed", run.attrs["status_message"]
-peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // (1024 if sys.platform != "darwin" else 1024**2)
+peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+peak /= 1024 if sys.platform != "darwin" else 1024**2
 print(seconds, peak)
 """
 
