@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from cellcrawl.solvers.adaptive import AdaptiveSolver
 from cellcrawl.solvers.base import Breakdown, Frame, Solver
 from cellcrawl.solvers.paper import PaperSolver
 
-SOLVERS: dict[str, type[Solver]] = {PaperSolver.name: PaperSolver}
+SOLVERS: dict[str, type[Solver]] = {solver.name: solver for solver in (AdaptiveSolver, PaperSolver)}
 
 __all__ = ["SOLVERS", "Breakdown", "Frame", "Solver"]

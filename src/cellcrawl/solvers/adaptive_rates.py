@@ -1,0 +1,204 @@
+"""Rates of change of the whole state on the staggered grid, and how stiff they are.
+
+A state is one flat array: ``w = theta - winding`` at the nodes and ``n`` at the midpoints, each with
+its halo, then the scalars length, tension, area and position of node 0. Kernels use the paper's
+letters: ``U`` edge velocity, ``T`` tangential velocity of the nodes, ``y = log r``.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+
+from cellcrawl._compile import inlined_kernel, kernel
+from cellcrawl.physics.exponential import exponential
+from cellcrawl.physics.force_balance import SOLVED, solve_off_rate
+from cellcrawl.physics.laws import (
+    binding_rate,
+    driving_force,
+    edge_velocity,
+    friction,
+    friction_bend,
+    friction_slope,
+)
+from cellcrawl.solvers.staggered import (
+    DIFFERENCE_PEAK,
+    HALO,
+    SECOND_DIFFERENCE_PEAK,
+    cell_mean,
+    central_difference,
+    difference_ahead,
+    difference_behind,
+    fill_halo,
+    largest,
+    mean_ahead,
+    mean_behind,
+    running_sum,
+    second_difference,
+    total,
+)
+
+LENGTH, TENSION, AREA, ORIGIN_X, ORIGIN_Y = range(5)  # scalars, after the two fields
+SCALARS: Final = 8  # room kept for them
+TENSION_RATE: Final = 7  # row of `edge` after the local parameters
+WORK_ROWS: Final = 6
+_HALO = np.uint64(HALO)
+_NEAR = 0.12  # a first step in log r this short is followed by a second that reaches rounding
+_SETTLED = 4e-6  # a second step this short leaves an error of its cube
+
+
+@inlined_kernel
+def halley_step(y: float, r: float, n: float, zeta_1: float, force: float) -> float:
+    """Step in ``y`` towards ``friction(y, n) = force``; the error is cubed."""
+    g = friction(y, r, n, zeta_1) - force
+    slope = friction_slope(y, r, n, zeta_1)
+    return -2.0 * g * slope / (2.0 * slope * slope - g * friction_bend(y, r))
+
+
+@inlined_kernel
+def growth(x: float) -> float:
+    """``exp(x)`` to rounding for |x| < 0.12."""
+    p = 1.0 / 40320.0
+    p = p * x + 1.0 / 5040.0
+    p = p * x + 1.0 / 720.0
+    p = p * x + 1.0 / 120.0
+    p = p * x + 1.0 / 24.0
+    p = p * x + 1.0 / 6.0
+    p = p * x + 0.5
+    p = p * x + 1.0
+    return p * x + 1.0
+
+
+@kernel
+def velocities(
+    w: np.ndarray,
+    n: np.ndarray,
+    length: float,
+    sigma: float,
+    edge: np.ndarray,
+    y: np.ndarray,
+    work: np.ndarray,
+) -> bool:
+    """Solve the force balance at the midpoints; False where it has no root.
+
+    Leaves ``log r`` in ``y``, shape (nodes,), and in the rows of ``work``, which have halos: ``U``,
+    ``kappa U`` and ``r_on (1 - n) - r n``.
+    """
+    nodes = y.size
+    per_spacing = nodes / length
+    winding = 2.0 * math.pi / length
+    r_on, zeta_1, epsilon = edge[0], edge[1], edge[3]
+    h, sigma_c, v_p = edge[4], edge[5], edge[6]
+    speed, stretch, binding, kappa, rate = work[0], work[1], work[2], work[3], work[4]
+    unsettled = 0
+    for i in range(np.uint64(nodes)):
+        j = i + _HALO
+        kappa[i] = winding + per_spacing * difference_ahead(w, j)
+        force = driving_force(sigma, kappa[i], sigma_c[i], h[i])
+        near = y[i]
+        r = exponential(near)
+        first = halley_step(near, r, n[j], zeta_1[i], force)
+        near = near + first
+        r = r * growth(first)
+        second = halley_step(near, r, n[j], zeta_1[i], force)
+        near = near + second
+        rate[i] = r * (1.0 + second * (1.0 + 0.5 * second))
+        good = (abs(first) < _NEAR) & (abs(second) < _SETTLED) & (near >= 0.0)
+        unsettled += 0 if good else 1
+        y[i] = near
+    if unsettled > 0:
+        bound = n[HALO : HALO + nodes]
+        if solve_off_rate(y, bound, sigma, kappa[:nodes], zeta_1, sigma_c, h) != SOLVED:
+            return False
+        for i in range(np.uint64(nodes)):
+            rate[i] = exponential(y[i])
+    for i in range(np.uint64(nodes)):
+        j = i + _HALO
+        speed[j] = edge_velocity(y[i], rate[i], v_p[i], epsilon[i])
+        binding[j] = binding_rate(n[j], rate[i], r_on[i])
+        stretch[j] = kappa[i] * speed[j]
+    fill_halo(speed, nodes)
+    fill_halo(stretch, nodes)
+    return True
+
+
+@kernel
+def rates(
+    state: np.ndarray,
+    out: np.ndarray,
+    y: np.ndarray,
+    edge: np.ndarray,
+    work: np.ndarray,
+) -> bool:
+    """Write the rates of change of ``state`` to ``out``; False where there is no off-rate.
+
+    Fills the halos of ``state``. ``y`` is the last ``log r`` and becomes the new one. ``edge``
+    holds the parameters at the midpoints and in its last row G, shape (8, nodes).
+    """
+    nodes = y.size
+    span = nodes + 2 * HALO
+    w, n, scalars = state[:span], state[span : 2 * span], state[2 * span :]
+    w_t, n_t, scalars_t = out[:span], out[span : 2 * span], out[2 * span :]
+    length = scalars[LENGTH]
+    fill_halo(w, nodes)
+    fill_halo(n, nodes)
+    if not (length > 0.0 and velocities(w, n, length, scalars[TENSION], edge, y, work)):
+        return False
+    spacing = length / nodes
+    per_spacing = nodes / length
+    winding = 2.0 * math.pi / length
+    speed, stretch, binding, slide = work[0], work[1], work[2], work[3]
+    mean_stretch = total(stretch, nodes) / nodes
+    for i in range(np.uint64(nodes)):
+        j = i + _HALO
+        slide[j] = spacing * (mean_stretch - cell_mean(stretch, j))
+    running_sum(slide, nodes)
+    fill_halo(slide, nodes)
+    diffusivity = edge[2]
+    for i in range(np.uint64(nodes)):
+        j = i + _HALO
+        bend = winding + per_spacing * central_difference(w, j)
+        w_t[j] = slide[j] * bend - per_spacing * difference_behind(speed, j)
+        spread = diffusivity[i] * (per_spacing * per_spacing) * second_difference(n, j)
+        drift = mean_ahead(slide, j) * per_spacing * central_difference(n, j)
+        n_t[j] = binding[j] + spread + drift
+    area_t = spacing * total(speed, nodes)
+    first_speed = mean_behind(speed, _HALO)
+    scalars_t[LENGTH] = length * mean_stretch
+    scalars_t[TENSION] = edge[TENSION_RATE, 0] * area_t
+    scalars_t[AREA] = area_t
+    scalars_t[ORIGIN_X] = first_speed * math.sin(w[HALO])
+    scalars_t[ORIGIN_Y] = -first_speed * math.cos(w[HALO])
+    return True
+
+
+@kernel
+def stiffness(
+    state: np.ndarray, y: np.ndarray, edge: np.ndarray, work: np.ndarray
+) -> tuple[float, float]:
+    """Bound on the fastest decay, and the decay of the tension by itself.
+
+    Diffusion and shape, or the tension, each with the reaction. ``y`` must belong to ``state``.
+    """
+    nodes = y.size
+    span = nodes + 2 * HALO
+    n, scalars = state[span : 2 * span], state[2 * span :]
+    per_spacing = nodes / scalars[LENGTH]
+    r_on, zeta_1, epsilon, h = edge[0], edge[1], edge[3], edge[4]
+    reaction, yielding, shape, diffusion = work[0], work[1], work[2], work[3]
+    for i in range(np.uint64(nodes)):
+        j = i + _HALO
+        r = exponential(y[i])
+        slope = friction_slope(y[i], r, n[j], zeta_1[i])
+        share = r * (1.0 + y[i]) / slope  # d(r log r) / dF: how much of a force becomes flow
+        slip = n[j] * r * zeta_1[i] * y[i] / slope  # fewer linkers, faster unbinding
+        reaction[j] = abs(r_on[i] + r - slip)
+        yielding[j] = epsilon[i] * share
+        shape[j] = epsilon[i] * share * h[i]
+        diffusion[j] = edge[2, i]
+    grid = largest(diffusion, nodes) * SECOND_DIFFERENCE_PEAK
+    grid += largest(shape, nodes) * abs(scalars[TENSION]) * DIFFERENCE_PEAK**2
+    tension = edge[TENSION_RATE, 0] * total(yielding, nodes) / per_spacing
+    return max(grid * per_spacing**2, tension) + largest(reaction, nodes), tension

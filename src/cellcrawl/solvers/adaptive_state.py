@@ -1,0 +1,90 @@
+"""The adaptive solver's state array: made from a cell, moved to another grid, read back."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from cellcrawl.curve import fourier
+from cellcrawl.solvers.adaptive_rates import AREA, LENGTH, ORIGIN_X, SCALARS, TENSION
+from cellcrawl.solvers.staggered import HALO
+from cellcrawl.starts.base import CellState
+
+
+def size(nodes: int) -> int:
+    """Entries of a state on ``nodes`` nodes."""
+    return 2 * (nodes + 2 * HALO) + SCALARS
+
+
+def nodes_of(state: np.ndarray) -> int:
+    """Nodes of a state, or of a stack of them."""
+    return int(state.shape[-1] - SCALARS) // 2 - 2 * HALO
+
+
+def angle(state: np.ndarray) -> np.ndarray:
+    """Tangent angle less its winding at the nodes; a view."""
+    return state[..., HALO : HALO + nodes_of(state)]
+
+
+def bound(state: np.ndarray) -> np.ndarray:
+    """Bound fraction at the midpoints; a view."""
+    nodes = nodes_of(state)
+    first = nodes + 3 * HALO
+    return state[..., first : first + nodes]
+
+
+def scalars(state: np.ndarray) -> np.ndarray:
+    """Length, tension, area and position of node 0; a view."""
+    return state[..., -SCALARS:]
+
+
+def winding(nodes: int) -> np.ndarray:
+    """Tangent angle of a circle at the nodes."""
+    return 2.0 * math.pi * np.arange(nodes) / nodes
+
+
+def shifted(samples: np.ndarray, part: float) -> np.ndarray:
+    """Periodic samples moved ahead by ``part`` of their spacing."""
+    nodes = samples.shape[-1]
+    k = np.arange(nodes // 2 + 1)
+    waves = np.fft.rfft(samples) * np.exp(2j * math.pi * part / nodes * k)
+    return np.asarray(np.fft.irfft(waves, nodes))
+
+
+def from_cell(cell: CellState, nodes: int) -> np.ndarray:
+    """State of a cell on ``nodes`` nodes."""
+    state = np.zeros(size(nodes))
+    curve = cell.curve
+    angle(state)[:] = fourier.resample(curve.theta - winding(curve.nodes), nodes)
+    bound(state)[:] = shifted(fourier.resample(cell.bound_fraction, nodes), 0.5)
+    values = scalars(state)
+    values[LENGTH], values[TENSION], values[AREA] = curve.length, cell.tension, curve.area
+    values[ORIGIN_X : ORIGIN_X + 2] = curve.origin
+    return state
+
+
+def regridded(states: np.ndarray, nodes: int) -> np.ndarray:
+    """Return a stack of states on another number of nodes, node 0 in place."""
+    moved = np.zeros((len(states), size(nodes)))
+    for old, new in zip(states, moved, strict=True):
+        angle(new)[:] = fourier.resample(angle(old), nodes)
+        bound(new)[:] = resampled_midpoints(bound(old), nodes)
+        scalars(new)[:] = scalars(old)
+    return moved
+
+
+def resampled_midpoints(samples: np.ndarray, nodes: int) -> np.ndarray:
+    """Return samples at midpoints on another number of nodes."""
+    return shifted(fourier.resample(shifted(samples, -0.5), nodes), 0.5)
+
+
+def hermite(part: float, step: float, ends: np.ndarray) -> np.ndarray:
+    """State at ``part`` of a step from ``ends``: first state, its rates, last state, its rates."""
+    first, first_rates, last, last_rates = ends
+    rest = 1.0 - part
+    return np.asarray(
+        rest * rest * (1.0 + 2.0 * part) * first
+        + part * part * (3.0 - 2.0 * part) * last
+        + step * part * rest * (rest * first_rates - part * last_rates)
+    )

@@ -1,0 +1,219 @@
+"""The adaptive solver: what it computes, how well, and that it can be stopped and resumed."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import cellcrawl as cc
+from cellcrawl.curve import Curve
+from cellcrawl.errors import InputError
+from cellcrawl.parameters import CONSTANT, Conditions, Schedule
+from cellcrawl.solvers import Frame
+from cellcrawl.solvers.adaptive import AdaptiveSolver
+from tests.conftest import check_start, reflected, rotated
+
+ZIGZAG = cc.Parameters(r_on=26, zeta_1=600)
+LAWS = ("printed", "consistent")
+
+
+def solver(
+    parameters: cc.Parameters = ZIGZAG,
+    state: cc.CellState | None = None,
+    schedule: Schedule = CONSTANT,
+    **options: float,
+) -> AdaptiveSolver:
+    state = state or check_start(parameters).state(parameters, AdaptiveSolver.start_nodes(256))
+    return AdaptiveSolver(state, Conditions(parameters, schedule), **options)
+
+
+def frame_at(time: float, made: AdaptiveSolver) -> Frame:
+    assert made.advance(time) is None
+    return made.frame(time)
+
+
+def error(found: Frame, true: Frame) -> float:
+    """The larger of the relative error of the length and the error of the centroid."""
+    shift = math.hypot(found.centroid_x - true.centroid_x, found.centroid_y - true.centroid_y)
+    return max(abs(found.length / true.length - 1.0), shift)
+
+
+@pytest.fixture(scope="module", params=LAWS)
+def law(request: pytest.FixtureRequest) -> cc.Parameters:
+    return ZIGZAG.replace(elasticity=request.param)
+
+
+def test_reproduces_the_deterministic_check() -> None:
+    frame = frame_at(2.0, solver(rtol=1e-8))
+    assert frame.length == pytest.approx(6.609484, abs=1.5e-6)
+    assert frame.tension == pytest.approx(912.998, abs=1.5e-3)
+    assert frame.area == pytest.approx(3.165835, abs=1.5e-6)
+    assert frame.centroid_x == pytest.approx(0.458285, abs=1.5e-6)
+    assert frame.centroid_y == pytest.approx(0.030681, abs=1.5e-6)
+
+
+def test_error_follows_the_tolerance(law: cc.Parameters) -> None:
+    true = frame_at(5.0, solver(law, rtol=1e-8))
+    tolerances = np.array([1e-3, 1e-4, 1e-5, 1e-6])
+    errors = np.array([error(frame_at(5.0, solver(law, rtol=rtol)), true) for rtol in tolerances])
+    assert np.all(errors <= 4.0 * tolerances)
+    slope = np.polyfit(np.log(tolerances), np.log(errors), 1)[0]
+    assert 0.6 < slope < 1.4
+
+
+@pytest.mark.parametrize("point", [(24, 540), (36, 560), (16, 600), (56, 560)])
+def test_default_tolerance_is_kept_in_every_mode(
+    point: tuple[int, int], law: cc.Parameters
+) -> None:
+    parameters = law.replace(r_on=point[0], zeta_1=point[1])
+    true = frame_at(5.0, solver(parameters, rtol=1e-6))
+    assert error(frame_at(5.0, solver(parameters)), true) <= 1e-4
+
+
+def test_error_estimate_is_within_a_factor_of_thirty(law: cc.Parameters) -> None:
+    true = frame_at(5.0, solver(law, rtol=1e-8))
+    for rtol in (1e-3, 1e-5):
+        made = solver(law, rtol=rtol)
+        found = error(frame_at(5.0, made), true)
+        estimate = made.diagnostics()["error_estimate"]
+        assert found / 3.0 <= estimate <= 30.0 * max(found, rtol)
+
+
+def test_resting_circle_stays_a_circle_on_the_fewest_nodes(law: cc.Parameters) -> None:
+    circle = Curve(math.pi / 2 + 2 * math.pi * np.arange(128) / 128, 2 * math.pi, np.array([1, 0]))
+    state = cc.CellState(circle, np.full(128, law.n_bar), law.sigma_bar)
+    made = solver(law, state)
+    frame = frame_at(1.0, made)
+    assert frame.length == pytest.approx(2 * math.pi, abs=1e-11)
+    assert np.ptp(frame.bound_fraction) < 1e-9
+    assert np.ptp(frame.curvature) < 1e-8
+    assert made.diagnostics()["most_nodes"] == 64
+
+
+def test_tension_follows_the_area(law: cc.Parameters) -> None:
+    made = solver(law, rtol=1e-7)
+    first = made.frame(0.0)
+    last = frame_at(3.0, made)
+    stretched = (last.tension - first.tension) / law.tension_rate
+    assert last.area - first.area == pytest.approx(stretched, abs=2e-6)
+
+
+def test_rotating_the_start_rotates_the_run() -> None:
+    state = check_start(ZIGZAG).state(ZIGZAG, 512)
+    straight = frame_at(2.0, solver(state=state))
+    turned = frame_at(2.0, solver(state=rotated(state, 0.7)))
+    z = (straight.x + 1j * straight.y) * np.exp(0.7j)
+    np.testing.assert_allclose(turned.x + 1j * turned.y, z, atol=1e-8)
+    np.testing.assert_allclose(turned.bound_fraction, straight.bound_fraction, atol=1e-8)
+
+
+def test_reflecting_the_start_reflects_the_run() -> None:
+    state = check_start(ZIGZAG).state(ZIGZAG, 512)
+    straight = frame_at(2.0, solver(state=state))
+    mirrored = frame_at(2.0, solver(state=reflected(state)))
+    assert mirrored.centroid_x == pytest.approx(straight.centroid_x, abs=1e-4)
+    assert mirrored.centroid_y == pytest.approx(-straight.centroid_y, abs=1e-4)
+    assert mirrored.tension == pytest.approx(straight.tension, rel=1e-4)
+
+
+def test_restored_run_goes_on_to_the_same_bits(law: cc.Parameters) -> None:
+    through = solver(law)
+    through.advance(1.3)
+    saved = through.checkpoint()
+    resumed = AdaptiveSolver(None, Conditions(law))
+    resumed.restore(saved)
+    for name in ("x", "theta", "bound_fraction", "off_rate"):
+        time = 1.3
+        assert np.all(getattr(resumed.frame(time), name) == getattr(through.frame(time), name))
+    for made in (through, resumed):
+        assert made.advance(3.0) is None
+    after, again = through.checkpoint(), resumed.checkpoint()
+    assert all(np.array_equal(after[name], again[name]) for name in after if name != "tally")
+
+
+def test_steps_do_not_depend_on_the_targets(law: cc.Parameters) -> None:
+    once, often = solver(law), solver(law)
+    once.advance(2.0)
+    for target in np.linspace(0.0, 2.0, 173):
+        often.advance(target)
+    assert once.time == often.time
+    assert np.array_equal(once.checkpoint()["states"], often.checkpoint()["states"])
+
+
+def test_frames_between_steps_are_as_accurate_as_steps(law: cc.Parameters) -> None:
+    coarse, fine = solver(law), solver(law, rtol=1e-7)
+    for time in np.linspace(0.1, 2.0, 20):
+        assert error(frame_at(time, coarse), frame_at(time, fine)) <= 2e-4
+
+
+def test_frames_at_any_number_of_nodes_lie_on_one_curve() -> None:
+    few, many = (frame_at(2.0, solver(nodes=nodes)) for nodes in (100, 700))
+    for name in ("x", "curvature", "bound_fraction", "off_rate"):
+        np.testing.assert_allclose(
+            getattr(few, name), getattr(many, name)[::7], rtol=1e-9, atol=1e-9
+        )
+
+
+@pytest.mark.parametrize("law_name", LAWS)
+def test_jumps_are_hit_exactly(law_name: str) -> None:
+    jump = Schedule({"r_on": [(1.0, 26.0), (1.0, 40.0)]})
+    parameters = ZIGZAG.replace(elasticity=law_name)
+    made = solver(parameters, schedule=jump, rtol=1e-7)
+    made.advance(1.0)
+    assert made.time == 1.0
+    before = solver(parameters, rtol=1e-7)
+    before.advance(1.0)
+    assert error(made.frame(1.0), before.frame(1.0)) <= 1e-6
+    assert error(frame_at(1.5, made), frame_at(1.5, before)) > 1e-4
+
+
+def test_ramps_are_followed_to_the_tolerance(law: cc.Parameters) -> None:
+    ramp = Schedule({"r_on": [(0.2, 26.0), (1.2, 40.0)], "r_p": [(0.5, 50.0), (1.0, 55.0)]})
+    true = frame_at(2.0, solver(law, schedule=ramp, rtol=1e-8))
+    for rtol in (1e-4, 1e-6):
+        assert error(frame_at(2.0, solver(law, schedule=ramp, rtol=rtol)), true) <= 4.0 * rtol
+
+
+def test_nodes_follow_the_shape_up_and_down() -> None:
+    gliding = cc.Parameters(r_on=16, zeta_1=600)
+    start = cc.RandomPerturbation(seed=3)
+    made = solver(gliding, start.state(gliding, AdaptiveSolver.start_nodes(256)))
+    made.advance(1.0)
+    nearly_round = made.checkpoint()["log_rate"].size
+    made.advance(4.0)
+    assert nearly_round < 128
+    assert made.checkpoint()["log_rate"].size > 2 * nearly_round
+
+
+def test_too_few_nodes_are_named() -> None:
+    made = solver(cc.Parameters(r_on=16, zeta_1=600), max_nodes=64)
+    breakdown = made.advance(20.0)
+    assert breakdown is not None
+    assert breakdown.status == "unresolved"
+    assert "max_nodes" in breakdown.message
+    assert np.all(np.isfinite(made.frame(made.time).off_rate))
+
+
+def test_leaving_the_model_is_named_and_keeps_the_last_state() -> None:
+    soft = cc.Parameters(r_on=16, zeta_1=600)
+    start = cc.RandomPerturbation(seed=1).state(soft, 1024)
+    tense = cc.CellState(start.curve, start.bound_fraction, -150.0)
+    with pytest.raises(InputError, match="off-rate"):
+        solver(soft, tense)
+
+
+def test_unresolved_start_is_refused() -> None:
+    theta = 2 * math.pi * np.arange(64) / 64
+    rough = Curve(theta + 0.05 * np.cos(31 * theta), 2 * math.pi)
+    with pytest.raises(InputError, match="not resolved"):
+        solver(state=cc.CellState(rough, np.full(64, 0.3), 800.0))
+
+
+@pytest.mark.parametrize(
+    "options", [{"rtol": 0.0}, {"rtol": 1.0}, {"max_nodes": 10}, {"nodes": 3}, {"min_nodes": 8192}]
+)
+def test_options_out_of_range_are_refused(options: dict[str, float]) -> None:
+    with pytest.raises(InputError):
+        solver(**options)
