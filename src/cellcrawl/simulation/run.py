@@ -22,7 +22,7 @@ from cellcrawl.solvers import SOLVERS, Breakdown, Solver
 from cellcrawl.starts import RandomPerturbation, Start
 from cellcrawl.validation import real_number
 
-DEFAULT_SOLVER = "paper"
+DEFAULT_SOLVER = "adaptive"
 _CHECK_EVERY = 0.1  # longest time between two looks for a self-crossing
 _SAME_TIME = 1e-9  # relative
 
@@ -55,9 +55,10 @@ def simulate(
         Time between saved records. Records are at its multiples; if ``t_end`` is none of them, or
         the run ends early, the last valid state is one more record.
     solver : str
-        Numerical scheme. ``"paper"`` is the paper's own (options ``nodes``, ``dt``).
+        Numerical scheme. ``"adaptive"`` meets a relative tolerance ``rtol`` (default 1e-4) and
+        chooses nodes and steps itself. ``"paper"`` is the paper's own (options ``nodes``, ``dt``).
     nodes : int, optional
-        Nodes on the edge; the solver's usual number unless given.
+        Nodes in the output; 256 unless given. ``"paper"`` computes on them too, and takes 2000.
     schedule : Schedule, optional
         Parameters that change during the run.
     output : str or Path, optional
