@@ -9,8 +9,8 @@ import numpy as np
 from cellcrawl._compile import kernel
 
 _FINER = 8  # grid refinement before local interpolation
-_TAPS = 12
-_BEFORE = 5  # samples before the one at or left of a place
+TAPS = 12
+BEFORE = 5  # samples before the one at or left of a place
 
 
 def wavenumbers(count: int) -> np.ndarray:
@@ -81,27 +81,27 @@ class TrigonometricSeries:
 
 @kernel
 def local_values(samples: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Values between equally spaced samples of period 2 pi, by polynomials through `_TAPS`."""
+    """Values between equally spaced samples of period 2 pi, by polynomials through `TAPS`."""
     count = samples.size
     result = np.empty(angle.size, samples.dtype)
-    weights = np.empty(_TAPS)
+    weights = np.empty(TAPS)
     for i in range(angle.size):
         place = angle[i] * (count / (2.0 * math.pi))
         first = math.floor(place)
         lagrange_weights(place - first, weights)
         value = 0.0 * samples[0]
-        for tap in range(_TAPS):
-            value += weights[tap] * samples[(first + tap - _BEFORE) % count]
+        for tap in range(TAPS):
+            value += weights[tap] * samples[(first + tap - BEFORE) % count]
         result[i] = value
     return result
 
 
 @kernel
 def lagrange_weights(part: float, weights: np.ndarray) -> None:
-    """Weights of the samples from `_BEFORE` before to as many after a place ``part`` beyond one."""
-    for tap in range(_TAPS):
+    """Weights of the samples from `BEFORE` before to as many after a place ``part`` beyond one."""
+    for tap in range(TAPS):
         weight = 1.0
-        for other in range(_TAPS):
+        for other in range(TAPS):
             if other != tap:
-                weight *= (part + _BEFORE - other) / (tap - other)
+                weight *= (part + BEFORE - other) / (tap - other)
         weights[tap] = weight
