@@ -106,7 +106,7 @@ def simulate(
     scheme = solver_named(solver)
     count = scheme.checked_nodes(nodes)
     _check_options(scheme, options)
-    state = first.state(conditions.at(0.0), scheme.start_nodes(count))
+    state = first.state(conditions.at(0.0), scheme.start_nodes(count, **options))
     engine = scheme(state, conditions, nodes=count, **options)
     if crossing_at(engine, 0.0) is not None:
         raise InputError("the start crosses itself: the model needs a simple edge")
