@@ -153,6 +153,8 @@ class AdaptiveSolver(Solver):
         self._framed = None
         self._hold(np.array(checkpoint["states"], dtype=float))
         self._log_rate = np.array(checkpoint["log_rate"], dtype=float)
+        current = self._states[drive.CURRENT]
+        stiffness(current, self._log_rate, self._midpoints(self.time), self._work)
 
     def options(self) -> dict[str, Any]:
         return {
@@ -229,6 +231,7 @@ class AdaptiveSolver(Solver):
         edge = self._midpoints(self.time)
         current, trial = self._states[drive.CURRENT], self._states[drive.TRIAL]
         self._counters[drive.RATES] += 1
+        stiffness(current, self._log_rate, edge, self._work)
         if not rates(current, trial, self._log_rate, edge, self._work):
             return False
         self._states[drive.CURRENT_RATES] = trial
@@ -273,7 +276,7 @@ class AdaptiveSolver(Solver):
     def _local_tolerance(self) -> float:
         """Local error that leaves a global error of about ``rtol`` at t = 5 (measured)."""
         if self._counters[drive.ORDER] == chebyshev.ORDER:
-            return float((8.0 * self._rtol) ** 1.5)
+            return float((10.0 * self._rtol) ** 1.5)
         return float(10.0 * self._rtol * (self._rtol / 1e-4) ** 0.15)
 
     def _fit_grid(self) -> Breakdown | None:
@@ -321,4 +324,4 @@ class AdaptiveSolver(Solver):
 
 def _grid_tolerance(rtol: float) -> float:
     """Part of the slopes of a formed cell that a grid may miss for an error of ``rtol`` (measured)."""
-    return float(0.5 * (28.6 * rtol) ** 0.625)
+    return float(0.45 * (28.6 * rtol) ** 0.625)

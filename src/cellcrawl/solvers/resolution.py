@@ -23,8 +23,8 @@ NODE_COUNTS: Final[tuple[int, ...]] = (
     3584,
     4096,
 )
-COARSEN: Final = 0.4  # go to a coarser grid only if it misses this part of what is allowed
-COARSER_MISSES: Final = 15.0  # about how much more the next coarser grid misses
+COARSEN: Final = 0.6  # go to a coarser grid only if it misses this part of what is allowed
+COARSER_MISSES: Final = 7.0  # about how much more the next coarser grid misses
 LEAST_ALLOWANCE: Final = 0.2
 _REFINE = 1.2  # least factor of a refinement
 _SCALE = 2.2
