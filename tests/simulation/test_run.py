@@ -149,7 +149,7 @@ def test_a_start_that_crosses_itself_is_refused():
 
 def test_a_start_outside_the_model_is_refused():
     # A deep narrow notch under high tension: 1 + kappa h < 0 somewhere.
-    start = cc.PerturbedCircle(radius={30: (0.2, 0.0)})
+    start = cc.PerturbedCircle(radius={12: (0.1, 0.0)})
     with pytest.raises(cc.InputError, match="no off-rate"):
         short(cc.Parameters(h=0.2), start=start, nodes=600)
 

@@ -64,9 +64,7 @@ class FixedGrid:
         self._nodes = nodes
         self.calls = 0
         scalars = layout.scalars(self._state)[:_SCALARS]
-        self.start = np.concatenate(
-            [layout.angle(self._state), layout.bound(self._state), scalars]
-        )
+        self.start = np.concatenate([layout.angle(self._state), layout.bound(self._state), scalars])
 
     def __call__(self, t: float, u: np.ndarray, out: np.ndarray) -> None:
         """Write the rates of ``u`` to ``out``."""

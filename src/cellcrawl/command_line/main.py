@@ -20,6 +20,7 @@ _COMMANDS: Final[dict[str, tuple[str, str]]] = {
     "plot": ("draw", "Draw a saved run."),
     "movie": ("draw", "Film a saved run."),
     "info": ("info", "Say what a file holds."),
+    "bench": ("bench", "Measure accuracy and speed on this machine."),
     "completion": ("completion", "Print the shell completion script."),
 }
 

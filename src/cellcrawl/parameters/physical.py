@@ -96,7 +96,7 @@ class PhysicalParameters(NamedFields):
     >>> cell.dimensionless().r_on
     26.0
     >>> round(1e4 * cell.scales.to_physical(cell.dimensionless().sigma_bar, "tension"), 2)
-    0.88
+    0.89
     """
 
     radius: float = 1e-5

@@ -1,0 +1,121 @@
+"""`cellcrawl bench`: the benchmarks, as tables, pictures and JSON."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import click
+
+from cellcrawl.command_line.options import say
+from cellcrawl.validation import one_of
+
+_KINDS = ("work-precision", "targets", "scaling", "startup")
+
+
+@click.command()
+@click.argument("kind", default="work-precision", metavar="[KIND]")
+@click.option("--quick", is_flag=True, help="A part of it, in under two minutes.")
+@click.option(
+    "--output",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="DIR",
+    help="Also write the results there, as JSON with machine and versions, and a picture.",
+)
+def bench(kind: str, quick: bool, output: Path | None) -> int:
+    r"""Measure accuracy and speed on this machine.
+
+    \b
+    KIND is one of
+      work-precision  error against time of every solver (default)
+      targets         the solver's targets: accuracy, speed by ratios
+      scaling         cost against nodes and against the length of the run
+      startup         import, first and second start from the shell
+
+    Compare figures of one run only, and quote ratios: machines differ, and share their cores.
+    CVODE takes part if scikit-sundae is installed, SciPy's solvers if SciPy is.
+
+    \b
+    Examples
+      cellcrawl bench --quick
+      cellcrawl bench targets --output benchmarks/results
+    """
+    from cellcrawl.bench import machine
+
+    one_of("KIND", kind, _KINDS)
+    say(machine.describe(machine.record()))
+    result = _MEASURE[kind](quick)
+    if output is not None:
+        machine.write(output / f"{kind}.json", result.data)
+        if result.figure is not None:
+            result.figure.savefig(output / f"{kind}.png", dpi=160)
+        say(f"results  {output}")
+    return 0
+
+
+class _Result(NamedTuple):
+    data: dict[str, Any]
+    figure: Any
+
+
+def _work_precision(quick: bool) -> _Result:
+    from cellcrawl.bench import work_precision as wp
+
+    rows: list[wp.Row] = []
+    for row in _table(wp.Row, wp.measure(quick)):
+        rows.append(row)
+    ratios = []
+    for case, t_end in dict.fromkeys((row.case, row.t_end) for row in rows):
+        part = [row for row in rows if (row.case, row.t_end) == (case, t_end)]
+        for solver in dict.fromkeys(row.solver for row in part if row.solver != "adaptive"):
+            shown = {e: wp.speed_up(part, solver, e) for e in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)}
+            ratios.append({"case": case, "t_end": t_end, "solver": solver, "times": shown})
+            values = "  ".join(f"{e:g}: {ratio:.1f}x" for e, ratio in shown.items())
+            say(f"{case}, t = {t_end:g}: adaptive is faster than {solver} at error {values}")
+    return _Result({"rows": [row._asdict() for row in rows], "ratios": ratios}, wp.plot(rows))
+
+
+def _targets(quick: bool) -> _Result:
+    from cellcrawl.bench import reach
+
+    rows = list(_table(reach.Target, reach.measure(quick)))
+    return _Result({"targets": [row._asdict() for row in rows]}, None)
+
+
+def _scaling(quick: bool) -> _Result:
+    from cellcrawl.bench import scaling
+
+    nodes = list(_table(scaling.NodeCost, scaling.cost_of_nodes(quick)))
+    streams = list(_table(scaling.Stream, scaling.cost_of_time(quick)))
+    data = {"nodes": [r._asdict() for r in nodes], "streams": [r._asdict() for r in streams]}
+    return _Result(data, scaling.plot(nodes, streams))
+
+
+def _startup(quick: bool) -> _Result:
+    from cellcrawl.bench import startup
+
+    rows = list(_table(startup.Start, startup.measure(quick)))
+    return _Result({"starts": [row._asdict() for row in rows]}, None)
+
+
+_MEASURE = {
+    "work-precision": _work_precision,
+    "targets": _targets,
+    "scaling": _scaling,
+    "startup": _startup,
+}
+
+
+def _table(kind: Any, rows: Iterable[Any]) -> Iterable[Any]:
+    """Print rows as they come, under their names."""
+    say("  ".join(kind._fields))
+    for row in rows:
+        say("  ".join(_cell(value) for value in row))
+        sys.stdout.flush()
+        yield row
+
+
+def _cell(value: Any) -> str:
+    return f"{value:.3g}" if isinstance(value, float) else str(value)
