@@ -224,6 +224,9 @@ class AdaptiveSolver(Solver):
         _, control[drive.CONTRAST] = resolution.missed(
             self._states[drive.CURRENT], layout.nodes_of(self._states), self._work
         )
+        control[drive.FORMATION] = resolution.formation(
+            layout.bound_with_halo(self._states[drive.CURRENT]), layout.nodes_of(self._states)
+        )
         self._counters[drive.RESTARTING] = 0
         return True
 
