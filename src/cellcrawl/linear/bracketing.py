@@ -105,4 +105,5 @@ def _minimum(function: Function, low: np.ndarray, high: np.ndarray) -> np.ndarra
             np.where(leftward, value, value_right),
             np.where(leftward, value_left, value),
         )
-    return np.where(value_left < value_right, left, right)
+    lowest: np.ndarray = np.where(value_left < value_right, left, right)
+    return lowest

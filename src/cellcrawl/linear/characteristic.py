@@ -32,12 +32,14 @@ class Characteristic(NamedTuple):
     @property
     def damping(self) -> np.ndarray:
         """Coefficient of ``lam``: below 0, a mode grows."""
-        return self.a * self.q + self.stiffness * self.c - self.b
+        damping: np.ndarray = self.a * self.q + self.stiffness * self.c - self.b
+        return damping
 
     @property
     def restoring(self) -> np.ndarray:
         """Constant coefficient: below 0, a mode grows; its sign is that of the stiffness."""
-        return self.stiffness * self.c * self.q
+        restoring: np.ndarray = self.stiffness * self.c * self.q
+        return restoring
 
     @property
     def discriminant(self) -> np.ndarray:
@@ -87,12 +89,13 @@ def characteristic(
 
 def checked_wavenumbers(k: Any) -> np.ndarray:
     """Return ``k`` as an array, or raise `InputError`."""
-    k = real_array("k", k, None)
-    if np.abs(k).max(initial=0.0) > HIGHEST_WAVENUMBER:
+    wavenumbers = real_array("k", k, None)
+    highest = np.abs(wavenumbers).max(initial=0.0)
+    if highest > HIGHEST_WAVENUMBER:
         raise InputError(
-            f"k = {np.abs(k).max():g} is out of range: it must be up to {HIGHEST_WAVENUMBER:g}"
+            f"k = {highest:g} is out of range: it must be up to {HIGHEST_WAVENUMBER:g}"
         )
-    return k
+    return wavenumbers
 
 
 def checked_values(what: str, given: Mapping[str, Any]) -> dict[str, np.ndarray]:

@@ -159,7 +159,10 @@ def _refined(values: np.ndarray) -> np.ndarray:
     """Add lines between those given, as many between each pair, up to the fewest that will do."""
     steps = values.size - 1
     parts = math.ceil(_GRID / steps)
-    return np.interp(np.arange(steps * parts + 1) / parts, np.arange(values.size), values)
+    refined: np.ndarray = np.interp(
+        np.arange(steps * parts + 1) / parts, np.arange(values.size), values
+    )
+    return refined
 
 
 def _ragged(
