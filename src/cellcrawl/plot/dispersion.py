@@ -136,7 +136,7 @@ def _draw(
     onsets = oscillation_onset(cell, k=(1e-6, highest))
     k = np.union1d(np.linspace(1.0, highest, _STEPS), [t.value for t in onsets if t.value > 1.0])
     larger, smaller = growth_rates(cell, k).T
-    paired = larger.imag > 0.0
+    paired = (larger.imag > 0.0) & ~np.isin(k, [t.value for t in onsets])
     whole = np.arange(1, math.floor(highest) + 1)
     at_whole = growth_rates(cell, whole)
     line: dict[str, Any] = {"color": colour, "zorder": 2.0}
