@@ -34,6 +34,12 @@ def bound(state: np.ndarray) -> np.ndarray:
     return state[..., first : first + nodes]
 
 
+def bound_with_halo(state: np.ndarray) -> np.ndarray:
+    """Bound fraction at the midpoints with its halo, of one state; a view."""
+    span = nodes_of(state) + 2 * HALO
+    return state[span : 2 * span]
+
+
 def scalars(state: np.ndarray) -> np.ndarray:
     """Length, tension, area and position of node 0; a view."""
     return state[..., -SCALARS:]
