@@ -31,48 +31,32 @@ CELLS = {
 }
 
 
-def dispersion_relations() -> Figure:
-    """Draw growth rate and frequency for four families (Fig. 2 A-D)."""
-    figure = Figure(figsize=(7.4, 7.6), layout="constrained")
-    axes = figure.subplots(4, 2, sharex=True)
-    for letter, row, (name, values) in zip("ABCD", axes, FAMILIES.items(), strict=True):
-        cc.plot.dispersion(FIG_2, k_max=40, axes=row, **{name: values})
-        row[0].set_title(letter, loc="left", fontweight="bold")
-        for ax in row:
-            ax.set_xlabel("wavenumber $k$" if letter == "D" else "")
-    return figure
-
-
-def stability_diagram() -> tuple[Figure, Figure]:
-    """Draw where modes grow, with the nine named cells on top (Fig. 4A), and how many do."""
-    plane = {"r_on": np.linspace(4, 66, 249), "zeta_1": np.linspace(440, 640, 201)}
-    stability = cc.linear.stability_map(cc.Parameters(), **plane)
-    shaded = cc.plot.stability(stability)
+def stability_diagram() -> Figure:
+    """Draw where modes grow, with the nine named cells on top (Fig. 4A)."""
+    plane = {"r_on": np.linspace(4, 66, 63), "zeta_1": np.linspace(440, 640, 51)}
+    ax = cc.plot.stability(cc.linear.stability_map(cc.Parameters(), **plane))
     for mode, (marker, points) in CELLS.items():
-        shaded.plot(
-            *np.transpose(points), marker, color="white", markeredgecolor="black", label=mode
+        ax.plot(
+            *np.transpose(points),
+            marker,
+            color="white",
+            markeredgecolor="black",
+            markeredgewidth=0.7,
+            markersize=5,
+            label=mode,
         )
-    keys = shaded.get_legend()
-    shaded.legend(loc="lower left", fontsize=6.5, handletextpad=0.2, framealpha=1.0)
-    shaded.add_artist(keys)
-    counted = Figure(figsize=(3.6, 2.9), layout="constrained")
-    ax = counted.subplots()
-    number = stability.unstable_modes.where(stability.unstable_modes > 0)
-    image = ax.pcolormesh(stability.r_on, stability.zeta_1, number.T, rasterized=True)
-    counted.colorbar(image, label="unstable modes")
-    ax.set(xlabel=r"on-rate $r_\mathrm{on}$", ylabel=r"adhesion strength $\zeta_1$")
-    return shaded.figure, counted
+    ax.legend(loc="lower right", fontsize=7, handletextpad=0.2, frameon=False)
+    return ax.figure
 
 
 def main(folder: Path) -> None:
     """Draw all, and say the numbers of one cell."""
     folder.mkdir(parents=True, exist_ok=True)
-    dispersion_relations().savefig(folder / "dispersion.png", dpi=160)
+    for name, values in FAMILIES.items():
+        figure = cc.plot.dispersion(FIG_2, k_max=40, **{name: values})
+        figure.savefig(folder / f"dispersion-{name}.png", dpi=200)
+    stability_diagram().savefig(folder / "stability.png", dpi=200)
     cell = cc.Parameters(r_on=25, zeta_1=600)
-    cc.plot.dispersion(cell).savefig(folder / "one-cell.png", dpi=160)
-    shaded, counted = stability_diagram()
-    shaded.savefig(folder / "stability.png", dpi=160)
-    counted.savefig(folder / "unstable-modes.png", dpi=160)
     onset = cc.linear.oscillation_onset(cell, k=(1, 30))[0]
     hopf = cc.linear.hopf_points(cell, k=(1, 30))[0]
     print(f"fastest: {cc.linear.fastest_mode(cell)}")

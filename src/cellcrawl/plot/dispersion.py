@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
 from cellcrawl.errors import InputError
 from cellcrawl.linear import cutoff_wavenumber, growth_rates, hopf_points, oscillation_onset
@@ -27,6 +28,7 @@ from cellcrawl.validation import real_number
 
 _STEPS = 800
 _MOST = 12
+_BELOW = 0.75  # how far below 0 is shown, over the largest growth rate
 _GREY = "#999999"
 _DASHED: Any = (0, (3.0, 1.5))
 _ONSET: dict[str, Any] = {"marker": "o", "markersize": 3.5, "markerfacecolor": "white"}
@@ -78,15 +80,16 @@ def dispersion(
     if axes is not None:
         real, imaginary = axes
         _draw_all(real, imaginary, cells, colours, highest)
-        if legend:
+        if legend and family:
             _name_colours(real, name, values, colours)
         return figure_of(real)
     with paper_figure(COLUMN, 1.3 * COLUMN) as figure:
         real, imaginary = figure.subplots(2, 1, sharex=True, height_ratios=(1.25, 1.0))
         _draw_all(real, imaginary, cells, colours, highest)
         real.set_xlabel("")
-        if legend:
+        if legend and family:
             _name_colours(real, name, values, colours)
+        if legend:
             _name_marks(figure)
         figure.align_ylabels([real, imaginary])
     return figure
@@ -116,23 +119,25 @@ def _highest(cells: list[Parameters]) -> float:
 def _draw_all(
     real: Axes, imaginary: Axes, cells: list[Parameters], colours: np.ndarray, highest: float
 ) -> None:
-    tops = []
-    for cell, colour in zip(cells, colours, strict=True):
-        tops.append(_draw(real, imaginary, cell, colour, highest))
+    ranges = [
+        _draw(real, imaginary, cell, colour, highest)
+        for cell, colour in zip(cells, colours, strict=True)
+    ]
     for ax, label in ((real, GROWTH_LABEL), (imaginary, FREQUENCY_LABEL)):
         ax.axhline(0.0, color=_GREY, linewidth=0.5, zorder=1.0)
         ax.set_xlim(0.0, highest)
+        ax.xaxis.set_major_locator(MaxNLocator(integer=True, steps=[1, 2, 5, 10]))
         ax.set_xlabel(WAVENUMBER_LABEL)
         ax.set_ylabel(label)
         ax.spines[["top", "right"]].set_visible(False)
-    top = max([1.0, *tops])
-    real.set_ylim(-0.75 * top, 1.1 * top)
+    lowest, top = min(low for low, _ in ranges), max(1.0, *(high for _, high in ranges))
+    real.set_ylim(max(-_BELOW * top, lowest - 0.1 * top), 1.1 * top)
 
 
 def _draw(
     real: Axes, imaginary: Axes, cell: Parameters, colour: np.ndarray, highest: float
-) -> float:
-    """Draw one cell; return its largest growth rate."""
+) -> tuple[float, float]:
+    """Draw one cell; return the least and largest real part shown."""
     onsets = oscillation_onset(cell, k=(1e-6, highest))
     k = np.union1d(np.linspace(1.0, highest, _STEPS), [t.value for t in onsets if t.value > 1.0])
     larger, smaller = growth_rates(cell, k).T
@@ -154,7 +159,8 @@ def _draw(
     for t in hopf_points(cell, k=(1.0, highest)):
         for ax, height in ((real, 0.0), (imaginary, t.frequency)):
             ax.plot(t.value, height, **mark, **_HOPF)
-    return float(at_whole[:, 0].real.max())
+    shown = np.concatenate([larger.real, smaller.real])
+    return float(shown.min()), float(shown.max())
 
 
 def _name_colours(real: Axes, name: str, values: list[float], colours: np.ndarray) -> None:

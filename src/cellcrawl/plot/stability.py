@@ -85,7 +85,7 @@ def _name_shades(axes: Axes, wavenumbers: list[int], colours: list[Any]) -> None
         Patch(facecolor=colour, edgecolor="none", label=str(k))
         for k, colour in zip(wavenumbers, colours, strict=False)
     ]
-    axes.legend(
+    keys = axes.legend(
         handles=[nothing, *named],
         loc="lower center",
         bbox_to_anchor=(0.5, 1.0),
@@ -97,3 +97,6 @@ def _name_shades(axes: Axes, wavenumbers: list[int], colours: list[Any]) -> None
         columnspacing=0.9,
         borderpad=0.2,
     )
+    axes.add_artist(keys)  # a later legend, of symbols on top, does not replace it
+    keys.set_clip_on(False)
+    axes.legend_ = None
