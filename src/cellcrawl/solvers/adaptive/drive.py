@@ -11,10 +11,16 @@ from typing import Final
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.solvers import chebyshev, stabilised
-from cellcrawl.solvers.adaptive_rates import stiffness
-from cellcrawl.solvers.resolution import COARSEN, COARSER_MISSES, allowance, formation, missed
-from cellcrawl.solvers.staggered import HALO
+from cellcrawl.solvers.adaptive import chebyshev, stabilised
+from cellcrawl.solvers.adaptive.rates import stiffness
+from cellcrawl.solvers.adaptive.resolution import (
+    COARSEN,
+    COARSER_MISSES,
+    allowance,
+    formation,
+    missed,
+)
+from cellcrawl.solvers.adaptive.staggered import HALO
 
 # rows of `states`; the last step went from PREVIOUS to CURRENT
 PREVIOUS, PREVIOUS_RATES, CURRENT, CURRENT_RATES, TRIAL, TRIAL_RATES = range(6)

@@ -13,7 +13,13 @@ from typing import Final
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.solvers.staggered import HALO, difference_ahead, fill_halo, sum_of_squares, total
+from cellcrawl.solvers.adaptive.staggered import (
+    HALO,
+    difference_ahead,
+    fill_halo,
+    sum_of_squares,
+    total,
+)
 
 NODE_COUNTS: Final[tuple[int, ...]] = (
     *(part * 16 * 2**k for k in range(6) for part in (4, 5, 6, 7)),

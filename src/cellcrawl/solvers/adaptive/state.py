@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from cellcrawl.curve import fourier
-from cellcrawl.solvers.adaptive_rates import AREA, LENGTH, ORIGIN_X, SCALARS, TENSION
-from cellcrawl.solvers.staggered import HALO
+from cellcrawl.solvers.adaptive.rates import AREA, LENGTH, ORIGIN_X, SCALARS, TENSION
+from cellcrawl.solvers.adaptive.staggered import HALO
 from cellcrawl.starts.base import CellState
 
 
