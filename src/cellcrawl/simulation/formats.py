@@ -125,7 +125,8 @@ def _create(file: h5netcdf.File, first: xr.Dataset, total: int) -> None:
 def _chunks(variable: xr.Variable, records: int) -> tuple[int, ...]:
     """Chunks of about a megabyte that hold whole edges, no longer than the run."""
     across = variable.sizes.get("node", 1)
-    along = min(records, max(1, _CHUNK_BYTES // (8 * across)))
+    chunks = -(-8 * across * records // _CHUNK_BYTES)
+    along = -(-records // max(chunks, 1))  # the last chunk as full as the others
     return tuple(along if dim == "time" else across for dim in variable.dims)
 
 
