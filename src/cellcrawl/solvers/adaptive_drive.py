@@ -155,9 +155,7 @@ def run(
             states[PREVIOUS_RATES, i] = states[CURRENT_RATES, i]
             states[CURRENT, i] = states[TRIAL, i]
             states[CURRENT_RATES, i] = states[TRIAL_RATES, i]
-        control[RADIUS], control[TENSION_DECAY] = stiffness(
-            states[CURRENT], y, edges[-1], work
-        )
+        control[RADIUS], control[TENSION_DECAY] = stiffness(states[CURRENT], y, edges[-1], work)
         if counters[STEPS] % _LOOK_EVERY != 0:
             if lands:
                 return AT_BREAK
