@@ -14,9 +14,9 @@ from cellcrawl._compile import kernel
 from cellcrawl.physics.exponential import exponential
 from cellcrawl.physics.force_balance import SOLVED, solve_off_rate
 from cellcrawl.physics.laws import binding_rate, edge_velocity, friction_slope
-from cellcrawl.solvers.spline.outline import KAPPA, SPEED, XU, YU
+from cellcrawl.solvers.spline.outline import KAPPA, LOG_R, SPEED, XU, YU, N, X, Y
 
-R_ON, ZETA_1, DIFFUSIVITY, EPSILON, H, SIGMA_C, V_P = range(7)  # rows of `edge`
+R_ON, ZETA_1, _, EPSILON, H, SIGMA_C, V_P = range(7)  # rows of `edge`
 BALANCED, NO_ROOT, NOT_FINITE, NEGATIVE, UNSETTLED = range(5)
 _TOLERANCE = 1e-12  # of the tension, relative
 _MOST_ITERATIONS = 25
@@ -24,10 +24,10 @@ _MOST_ITERATIONS = 25
 
 @kernel
 def solve_balance(
-    y: np.ndarray, n: np.ndarray, sigma: float, shape: np.ndarray, edge: np.ndarray
+    fields: np.ndarray, sigma: float, shape: np.ndarray, edge: np.ndarray
 ) -> tuple[int, int]:
     """Off-rate of every marker in place from its last value; a code and the marker it is about."""
-    kappa = shape[KAPPA]
+    y, n, kappa = fields[LOG_R], fields[N], shape[KAPPA]
     failed = solve_off_rate(y, n, sigma, kappa, edge[ZETA_1], edge[SIGMA_C], edge[H])
     if failed == SOLVED:
         return BALANCED, 0
@@ -39,8 +39,7 @@ def solve_balance(
 
 @kernel
 def solve_tension(
-    y: np.ndarray,
-    n: np.ndarray,
+    fields: np.ndarray,
     guess: float,
     known: float,
     weight: float,
@@ -53,9 +52,10 @@ def solve_tension(
     number, solved by Newton's method, however stiff (``weight`` is a time times ``G``). ``y`` is
     solved in place. Returns a code, the marker it is about, and the tension.
     """
+    y, n = fields[LOG_R], fields[N]
     sigma = guess
     for _ in range(_MOST_ITERATIONS):
-        code, marker = solve_balance(y, n, sigma, shape, edge)
+        code, marker = solve_balance(fields, sigma, shape, edge)
         if code != BALANCED:
             return code, marker, sigma
         area_rate = slope = 0.0
@@ -77,35 +77,34 @@ def solve_tension(
 
 @kernel
 def rates(
-    y: np.ndarray,
-    n: np.ndarray,
+    fields: np.ndarray,
     shape: np.ndarray,
     edge: np.ndarray,
-    velocity_x: np.ndarray,
-    velocity_y: np.ndarray,
-    binding: np.ndarray,
+    out: np.ndarray,
 ) -> float:
-    """Velocity of the markers and binding of linkers; returns ``dA/dt``."""
+    """Velocity of the markers and binding of linkers in rows x, y, n; returns ``dA/dt``."""
+    y, n = fields[LOG_R], fields[N]
     area_rate = 0.0
     for i in range(n.size):
         r = exponential(y[i])
         velocity = edge_velocity(y[i], r, edge[V_P, i], edge[EPSILON, i])
         per_speed = velocity / shape[SPEED, i]
-        velocity_x[i] = per_speed * shape[YU, i]
-        velocity_y[i] = -per_speed * shape[XU, i]
-        binding[i] = binding_rate(n[i], r, edge[R_ON, i])
+        out[X, i] = per_speed * shape[YU, i]
+        out[Y, i] = -per_speed * shape[XU, i]
+        out[N, i] = binding_rate(n[i], r, edge[R_ON, i])
         area_rate += velocity * shape[SPEED, i]
     return area_rate
 
 
 @kernel
 def fastest_explicit_rate(
-    y: np.ndarray, n: np.ndarray, sigma: float, shape: np.ndarray, edge: np.ndarray, zigzag: float
+    fields: np.ndarray, sigma: float, shape: np.ndarray, edge: np.ndarray, zigzag: float
 ) -> float:
     """Bound on the decay rates that are stepped explicitly: curvature smoothing and binding.
 
     A shape wave of height 1 from marker to marker has a curvature of ``zigzag / g**2``.
     """
+    y, n = fields[LOG_R], fields[N]
     smoothing = binding = 0.0
     for i in range(n.size):
         r = exponential(y[i])

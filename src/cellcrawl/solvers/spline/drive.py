@@ -18,13 +18,14 @@ from cellcrawl.solvers.spline.outline import (
     SHAPE_ROWS,
     XU,
     YU,
+    copy,
     measure,
     sharpest_turn,
     unevenness,
 )
 from cellcrawl.solvers.spline.periodic import ZIGZAG
-from cellcrawl.solvers.spline.remeshing import LOG_R, N, SPREAD_ROWS, X, Y, remesh
-from cellcrawl.solvers.spline.runge_kutta import EXPLICIT_LIMIT, STAGES, between_ends, step
+from cellcrawl.solvers.spline.remeshing import SPREAD_ROWS, remesh
+from cellcrawl.solvers.spline.runge_kutta import EXPLICIT_LIMIT, between_ends, step
 
 TENSION, ANGLE = range(2)  # `scalars`; ANGLE is the tangent's at the first marker, continuous
 STEPS, PARTS, REMESHINGS, RETRIES, MOST_PARTS = range(5)  # `counters`
@@ -37,7 +38,7 @@ LARGEST_PARTS = 20_000
 _RETRIES = 3  # each splits the step four times as fine
 
 EDGE_ROWS = 7
-WORK_ROWS = SHAPE_ROWS + EDGE_ROWS + 4 * STAGES + 4 + max(LINKER_ROWS, SPREAD_ROWS)
+WORK_ROWS = SHAPE_ROWS + EDGE_ROWS + 4 + max(LINKER_ROWS, SPREAD_ROWS)
 
 
 @kernel
@@ -52,13 +53,15 @@ def advance(
     counters: np.ndarray,
     before_fields: np.ndarray,
     before_scalars: np.ndarray,
+    slopes: np.ndarray,
     work: np.ndarray,
 ) -> tuple[int, int, int]:
     """Take up to ``steps`` steps of ``dt`` in place.
 
     ``fields`` has shape (4, markers): x, y, n, log r; ``ends`` (2, 7, markers) and
     ``tension_rates`` (2,) are the parameters at both ends of the call, which differ only if
-    ``varies`` (then ``steps`` is 1); ``work`` has shape (WORK_ROWS, markers). ``before_fields`` and ``before_scalars``
+    ``varies`` (then ``steps`` is 1); ``slopes`` has shape
+    (STAGES, 4, markers) and ``work`` (WORK_ROWS, markers). ``before_fields`` and ``before_scalars``
     are left at the beginning of the last step, on the same markers as its end.
 
     Returns
@@ -70,32 +73,26 @@ def advance(
     taken : int
         Steps taken.
     """
-    markers = fields.shape[1]
     shape = work[:SHAPE_ROWS]
     edge = work[SHAPE_ROWS : SHAPE_ROWS + EDGE_ROWS]
-    spare = work[SHAPE_ROWS + EDGE_ROWS + 4 * STAGES :]
-    slopes = work[SHAPE_ROWS + EDGE_ROWS : SHAPE_ROWS + EDGE_ROWS + 4 * STAGES].reshape(
-        (STAGES, 4, markers)
-    )
-    measure(fields[X], fields[Y], shape)
+    spare = work[SHAPE_ROWS + EDGE_ROWS :]
+    measure(fields, shape)
     for taken in range(steps):
-        before_fields[:] = fields
-        before_scalars[:] = scalars
+        copy(fields, before_fields)
+        before_scalars[TENSION], before_scalars[ANGLE] = scalars[TENSION], scalars[ANGLE]
         between_ends(ends, 0.0, edge)
         if unevenness(shape) > UNEVEN:
             remesh(fields, shape, spare)
-            code, marker = solve_balance(fields[LOG_R], fields[N], scalars[TENSION], shape, edge)
+            code, marker = solve_balance(fields, scalars[TENSION], shape, edge)
             if code != BALANCED:
-                fields[:] = before_fields
+                copy(before_fields, fields)
                 return code, marker, taken
             counters[REMESHINGS] += 1
-            before_fields[:] = fields
+            copy(fields, before_fields)
         turn, marker = sharpest_turn(shape)
         if turn > LARGEST_TURN:
             return UNRESOLVED, marker, taken
-        rate = fastest_explicit_rate(
-            fields[LOG_R], fields[N], scalars[TENSION], shape, edge, ZIGZAG
-        )
+        rate = fastest_explicit_rate(fields, scalars[TENSION], shape, edge, ZIGZAG)
         if not rate * dt < EXPLICIT_LIMIT * LARGEST_PARTS:
             return TOO_STIFF, marker, taken
         parts = math.floor(rate * dt / EXPLICIT_LIMIT) + 1
@@ -123,8 +120,8 @@ def advance(
             if code == BALANCED:
                 break
             counters[RETRIES] += 1
-            fields[:] = before_fields
-            measure(fields[X], fields[Y], shape)
+            copy(before_fields, fields)
+            measure(fields, shape)
             between_ends(ends, 0.0, edge)
             parts *= 4
         if code != BALANCED:

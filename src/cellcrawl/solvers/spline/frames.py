@@ -9,9 +9,9 @@ import numpy as np
 
 from cellcrawl.solvers.base import Frame, pointwise_velocity_and_friction
 from cellcrawl.solvers.spline import balance, outline
-from cellcrawl.solvers.spline.balance import DIFFUSIVITY
-from cellcrawl.solvers.spline.linkers import LINKER_ROWS, second_derivative_after
-from cellcrawl.solvers.spline.remeshing import LOG_R, SPREAD_ROWS, N, X, Y, spread_evenly
+from cellcrawl.solvers.spline.linkers import DIFFUSIVITY, LINKER_ROWS, second_derivative_after
+from cellcrawl.solvers.spline.outline import LOG_R, N, X, Y
+from cellcrawl.solvers.spline.remeshing import SPREAD_ROWS, spread_evenly
 
 
 class State(NamedTuple):
@@ -28,7 +28,7 @@ class State(NamedTuple):
 def measured(fields: np.ndarray) -> np.ndarray:
     """Return the `outline.measure` of the markers, shape (SHAPE_ROWS, markers)."""
     shape = np.empty((outline.SHAPE_ROWS, fields.shape[1]))
-    outline.measure(fields[X], fields[Y], shape)
+    outline.measure(fields, shape)
     return shape
 
 
@@ -44,17 +44,11 @@ def rates_of_change(
 ) -> tuple[np.ndarray, float]:
     """Return the rates of x, y and n at the markers, shape (3, markers), and of the tension."""
     fields, shape = state.fields.copy(), measured(state.fields)
-    balance.solve_balance(fields[LOG_R], fields[N], state.tension, shape, edge)
+    balance.solve_balance(fields, state.tension, shape, edge)
     rates, curved = np.empty((3, fields.shape[1])), np.empty(fields.shape[1])
-    area_rate = balance.rates(fields[LOG_R], fields[N], shape, edge, *rates)
-    second_derivative_after(
-        fields[N],
-        edge[DIFFUSIVITY],
-        0.0,
-        shape[outline.SEGMENT],
-        curved,
-        np.empty((LINKER_ROWS, fields.shape[1])),
-    )
+    area_rate = balance.rates(fields, shape, edge, rates)
+    spare = np.empty((LINKER_ROWS, fields.shape[1]))
+    second_derivative_after(fields, edge, 0.0, shape, curved, spare)
     rates[N] += edge[DIFFUSIVITY] * curved
     return rates, tension_rate * area_rate
 
@@ -96,15 +90,15 @@ def frame(state: State, edge: np.ndarray) -> Frame:
     markers, shape = state.fields, measured(state.fields)
     even = on_even_nodes(markers)
     even_shape = measured(even)
-    y = even[LOG_R].copy()
-    code, _ = balance.solve_balance(y, even[N], state.tension, even_shape, edge)
-    if code != balance.BALANCED:
-        y = even[LOG_R]  # a jump of the parameters left no balance: that of before
-    off_rate = np.exp(y)
+    balanced = even.copy()
+    code, _ = balance.solve_balance(balanced, state.tension, even_shape, edge)
+    if code == balance.BALANCED:  # or a jump of the parameters left none: keep that of before
+        even = balanced
+    off_rate = np.exp(even[LOG_R])
     theta = np.unwrap(np.arctan2(even_shape[outline.YU], even_shape[outline.XU]))
     theta += 2.0 * math.pi * round((state.angle - theta[0]) / (2.0 * math.pi))
     velocity, friction = pointwise_velocity_and_friction(off_rate, even[N], edge)
-    center = outline.centroid(markers[X], markers[Y], shape)
+    center = outline.centroid(markers, shape)
     return Frame(
         time=state.time,
         x=even[X],
@@ -117,7 +111,7 @@ def frame(state: State, edge: np.ndarray) -> Frame:
         friction=friction,
         tension=state.tension,
         length=float(shape[outline.SPEED].sum()),
-        area=float(outline.area(markers[X], markers[Y], shape)),
+        area=float(outline.area(markers, shape)),
         centroid_x=float(center[0]),
         centroid_y=float(center[1]),
     )

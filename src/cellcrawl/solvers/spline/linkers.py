@@ -13,16 +13,18 @@ import numpy as np
 
 from cellcrawl._compile import kernel
 from cellcrawl.solvers.cyclic import solve_cyclic_tridiagonal
+from cellcrawl.solvers.spline.outline import SEGMENT, N
 
 LINKER_ROWS = 5
+DIFFUSIVITY = 2  # row of `edge`
 
 
 @kernel
 def second_derivative_after(
-    n: np.ndarray,
-    diffusivity: np.ndarray,
+    fields: np.ndarray,
+    edge: np.ndarray,
     step: float,
-    segment: np.ndarray,
+    shape: np.ndarray,
     w: np.ndarray,
     work: np.ndarray,
 ) -> None:
@@ -30,8 +32,10 @@ def second_derivative_after(
 
     The stepped field is ``n + step D w``; with ``step = 0`` this is the plain second derivative.
     From ``P w = Q (n + step D w)`` follows the cyclic tridiagonal system
-    ``(P - step Q D) w = Q n``. Arrays have shape (markers,), ``work`` (LINKER_ROWS, markers).
+    ``(P - step Q D) w = Q n``. ``w`` has shape (markers,), ``work``
+    (LINKER_ROWS, markers).
     """
+    n, diffusivity, segment = fields[N], edge[DIFFUSIVITY], shape[SEGMENT]
     markers = n.size
     lower, diagonal, upper = work[0], work[1], work[2]
     for i in range(markers):

@@ -14,23 +14,32 @@ import numpy as np
 from cellcrawl._compile import kernel
 from cellcrawl.solvers.spline.periodic import derivatives
 
+X, Y, N, LOG_R = range(4)  # rows of `fields`
 XU, YU, XUU, YUU, SPEED, PACE, KAPPA, SEGMENT, SCRATCH = range(9)  # rows of a `shape` array
 SHAPE_ROWS = 9
 
 
 @kernel
-def measure(x: np.ndarray, y: np.ndarray, shape: np.ndarray) -> None:
-    """Fill ``shape`` from the markers.
+def copy(source: np.ndarray, target: np.ndarray) -> None:
+    """``target[:] = source``, which would take Numba seconds to compile."""
+    for row in range(source.shape[0]):
+        for i in range(source.shape[1]):
+            target[row, i] = source[row, i]
+
+
+@kernel
+def measure(fields: np.ndarray, shape: np.ndarray) -> None:
+    """Fill ``shape`` from the markers, the first two rows of ``fields``.
 
     Its rows: derivatives of x and y, speed ``g``, ``dg/du`` (`PACE`), curvature, and the arclength
     from each marker to the next (`SEGMENT`, trapezoid with end correction); all of fourth order.
     The outward normal is ``(y_u, -x_u) / g``.
     """
-    markers = x.size
+    markers = fields.shape[1]
     xu, yu, xuu, yuu = shape[XU], shape[YU], shape[XUU], shape[YUU]
     speed, pace, kappa, segment = shape[SPEED], shape[PACE], shape[KAPPA], shape[SEGMENT]
-    derivatives(x, xu, xuu, shape[SCRATCH])
-    derivatives(y, yu, yuu, shape[SCRATCH])
+    derivatives(fields[X], xu, xuu, shape[SCRATCH])
+    derivatives(fields[Y], yu, yuu, shape[SCRATCH])
     for i in range(markers):
         squared = xu[i] * xu[i] + yu[i] * yu[i]
         speed[i] = math.sqrt(squared)
@@ -43,22 +52,13 @@ def measure(x: np.ndarray, y: np.ndarray, shape: np.ndarray) -> None:
 
 
 @kernel
-def total(f: np.ndarray, shape: np.ndarray) -> float:
-    """Integral of ``f`` over the arclength."""
-    speed = shape[SPEED]
-    result = 0.0
-    for i in range(f.size):
-        result += f[i] * speed[i]
-    return result
-
-
-@kernel
-def area(x: np.ndarray, y: np.ndarray, shape: np.ndarray) -> float:
+def area(fields: np.ndarray, shape: np.ndarray) -> float:
     """Enclosed area, half the integral of ``x dy - y dx``.
 
-    Its rate of change when the markers move along their normals at ``U`` is exactly the `total`
-    of ``U``, as it is for the curve itself.
+    Its rate of change when the markers move along their normals at ``U`` is exactly the sum
+    of ``U g``, as it is for the curve itself.
     """
+    x, y = fields[X], fields[Y]
     result = 0.0
     for i in range(x.size):
         result += (x[i] - x[0]) * shape[YU, i] - (y[i] - y[0]) * shape[XU, i]
@@ -66,20 +66,24 @@ def area(x: np.ndarray, y: np.ndarray, shape: np.ndarray) -> float:
 
 
 @kernel
-def centroid(x: np.ndarray, y: np.ndarray, shape: np.ndarray) -> tuple[float, float]:
+def centroid(fields: np.ndarray, shape: np.ndarray) -> tuple[float, float]:
     """Centroid of the enclosed area."""
+    x, y = fields[X], fields[Y]
     moment_x = moment_y = 0.0
     for i in range(x.size):
         moment_x += (x[i] - x[0]) ** 2 * shape[YU, i]
         moment_y -= (y[i] - y[0]) ** 2 * shape[XU, i]
-    scale = 0.5 / area(x, y, shape)
+    scale = 0.5 / area(fields, shape)
     return x[0] + scale * moment_x, y[0] + scale * moment_y
 
 
 @kernel
 def unevenness(shape: np.ndarray) -> float:
     """Largest over smallest spacing of the markers."""
-    return float(shape[SPEED].max() / shape[SPEED].min())
+    least = most = shape[SPEED, 0]
+    for i in range(shape.shape[1]):
+        least, most = min(least, shape[SPEED, i]), max(most, shape[SPEED, i])
+    return float(most / least)
 
 
 @kernel

@@ -6,6 +6,7 @@ import numpy as np
 
 from cellcrawl._compile import kernel
 from cellcrawl.solvers.spline.outline import (
+    LOG_R,
     PACE,
     SEGMENT,
     SPEED,
@@ -13,13 +14,14 @@ from cellcrawl.solvers.spline.outline import (
     XUU,
     YU,
     YUU,
-    area,
+    N,
+    X,
+    Y,
+    copy,
     measure,
-    total,
 )
 from cellcrawl.solvers.spline.periodic import between, derivatives
 
-X, Y, N, LOG_R = range(4)  # rows of `fields`
 SPREAD_ROWS = 3
 
 
@@ -76,7 +78,7 @@ def _part_at(shape: np.ndarray, i: int, j: int, distance: float) -> float:
         part = min(max(part + change, 0.0), 1.0)
         if abs(change) < 1e-15:
             break
-    return part
+    return float(part)
 
 
 @kernel
@@ -88,5 +90,5 @@ def remesh(fields: np.ndarray, shape: np.ndarray, work: np.ndarray) -> None:
     """
     new = work[:4]
     spread_evenly(fields, shape, new, work[4:])
-    fields[:] = new
-    measure(fields[X], fields[Y], shape)
+    copy(new, fields)
+    measure(fields, shape)

@@ -1,4 +1,4 @@
-"""One step: third-order additive Runge-Kutta, explicit for shape and binding, implicit for the rest.
+"""One step of third order: explicit for shape and binding, implicit for diffusion and tension.
 
 ARK3(2)4L[2]SA of Kennedy & Carpenter (Appl. Numer. Math. 44, 139, 2003). Markers and binding take
 its explicit part, diffusion and tension its implicit, L-stable part. A stage's markers are known
@@ -12,20 +12,13 @@ from __future__ import annotations
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.solvers.spline.balance import (
-    BALANCED,
-    DIFFUSIVITY,
-    rates,
-    solve_balance,
-    solve_tension,
-)
-from cellcrawl.solvers.spline.linkers import LINKER_ROWS, second_derivative_after
-from cellcrawl.solvers.spline.outline import SEGMENT, measure
-from cellcrawl.solvers.spline.remeshing import LOG_R, N, X, Y
+from cellcrawl.solvers.spline.balance import BALANCED, rates, solve_balance, solve_tension
+from cellcrawl.solvers.spline.linkers import DIFFUSIVITY, second_derivative_after
+from cellcrawl.solvers.spline.outline import LOG_R, N, X, Y, copy, measure
 
 STAGES = 4
 EXPLICIT_LIMIT = 2.5  # step times decay rate; the explicit part alone is stable up to 3.66
-VELOCITY_X, VELOCITY_Y, BINDING, SPREADING = range(4)  # rows of a stage's `slopes`
+SPREADING = 3  # row of a stage's `slopes` after those of x, y and n: D n_ss
 
 _GAMMA = 1767732205903 / 4055673282236
 _B1 = 1471266399579 / 7840856788654
@@ -101,10 +94,10 @@ def step(
         `BALANCED`, or why there is no step and where; ``fields`` are then of no use.
     tension : float
     """
-    stage, spare = work[:4], work[4 : 4 + LINKER_ROWS]
+    stage, spare = work[:4], work[4:]
     rate = tension_rates[0]
     tension_slopes = np.zeros(STAGES)
-    stage[:] = fields
+    copy(fields, stage)
     sigma = tension
     for i in range(STAGES):
         if varies:
@@ -115,10 +108,8 @@ def step(
         implicit = 0.0 if i == 0 else dt * _GAMMA
         if i > 0:
             _combine(dt, i, fields, slopes, stage)
-            measure(stage[X], stage[Y], shape)
-        second_derivative_after(
-            stage[N], edge[DIFFUSIVITY], implicit, shape[SEGMENT], own[SPREADING], spare
-        )
+            measure(stage, shape)
+        second_derivative_after(stage, edge, implicit, shape, own[SPREADING], spare)
         for node in range(stage.shape[1]):
             own[SPREADING, node] *= edge[DIFFUSIVITY, node]
             stage[N, node] += implicit * own[SPREADING, node]
@@ -126,37 +117,31 @@ def step(
             known = tension
             for j in range(i):
                 known += dt * _IMPLICIT[i, j] * tension_slopes[j]
-            code, marker, sigma = solve_tension(
-                stage[LOG_R], stage[N], sigma, known, implicit * rate, shape, edge
-            )
+            code, marker, sigma = solve_tension(stage, sigma, known, implicit * rate, shape, edge)
             if code != BALANCED:
                 return code, marker, tension
-        tension_slopes[i] = rate * rates(
-            stage[LOG_R], stage[N], shape, edge, own[VELOCITY_X], own[VELOCITY_Y], own[BINDING]
-        )
+        tension_slopes[i] = rate * rates(stage, shape, edge, own)
 
     for j in range(STAGES):
         tension += dt * _WEIGHTS[j] * tension_slopes[j]
         for node in range(fields.shape[1]):
             weight = dt * _WEIGHTS[j]
-            fields[X, node] += weight * slopes[j, VELOCITY_X, node]
-            fields[Y, node] += weight * slopes[j, VELOCITY_Y, node]
-            fields[N, node] += weight * (slopes[j, BINDING, node] + slopes[j, SPREADING, node])
-    measure(fields[X], fields[Y], shape)
-    fields[LOG_R] = stage[LOG_R]
-    code, marker = solve_balance(fields[LOG_R], fields[N], tension, shape, edge)
+            fields[X, node] += weight * slopes[j, X, node]
+            fields[Y, node] += weight * slopes[j, Y, node]
+            fields[N, node] += weight * (slopes[j, N, node] + slopes[j, SPREADING, node])
+    measure(fields, shape)
+    copy(stage[LOG_R:], fields[LOG_R:])
+    code, marker = solve_balance(fields, tension, shape, edge)
     return code, marker, tension
 
 
 @kernel
 def _combine(dt: float, i: int, fields: np.ndarray, slopes: np.ndarray, stage: np.ndarray) -> None:
     """Markers of stage ``i``, and its bound fraction but for the stage's own diffusion."""
-    stage[:LOG_R] = fields[:LOG_R]
+    copy(fields[:LOG_R], stage)
     for j in range(i):
         explicit, implicit = dt * _EXPLICIT[i, j], dt * _IMPLICIT[i, j]
         for node in range(fields.shape[1]):
-            stage[X, node] += explicit * slopes[j, VELOCITY_X, node]
-            stage[Y, node] += explicit * slopes[j, VELOCITY_Y, node]
-            stage[N, node] += (
-                explicit * slopes[j, BINDING, node] + implicit * slopes[j, SPREADING, node]
-            )
+            stage[X, node] += explicit * slopes[j, X, node]
+            stage[Y, node] += explicit * slopes[j, Y, node]
+            stage[N, node] += explicit * slopes[j, N, node] + implicit * slopes[j, SPREADING, node]

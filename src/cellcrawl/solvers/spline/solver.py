@@ -11,7 +11,7 @@ from cellcrawl.errors import InputError
 from cellcrawl.parameters import Conditions
 from cellcrawl.solvers.base import Breakdown, Frame, Solver
 from cellcrawl.solvers.spline import balance, drive, frames, outline
-from cellcrawl.solvers.spline.remeshing import LOG_R, N, X, Y
+from cellcrawl.solvers.spline.outline import LOG_R, N, X, Y
 from cellcrawl.solvers.spline.runge_kutta import STAGES
 from cellcrawl.starts.base import CellState
 from cellcrawl.validation import real_number, whole_number
@@ -51,6 +51,7 @@ class SplineSolver(Solver):
         self._anchor = time  # steps are counted from here: the start, or the last break
         self._steps_from_anchor = 0
         self.time = time
+        self._slopes = np.empty((STAGES, 4, nodes))
         self._work = np.empty((drive.WORK_ROWS, nodes))
         self._fields = np.zeros((4, nodes))
         self._scalars = np.zeros(2)
@@ -141,7 +142,7 @@ class SplineSolver(Solver):
                 f"{self._nodes} nodes are too few for this start: its edge turns by {turn:.2g} "
                 f"radians from node to node at node {marker}; give more nodes"
             )
-        code, marker = balance.solve_balance(fields[LOG_R], fields[N], start.tension, shape, edge)
+        code, marker = balance.solve_balance(fields, start.tension, shape, edge)
         if code != balance.BALANCED:
             raise InputError(
                 f"the start has no off-rate r >= 1 that balances the forces at node {marker} "
@@ -169,6 +170,7 @@ class SplineSolver(Solver):
             self._counters,
             self._before_fields,
             self._before_scalars,
+            self._slopes,
             self._work,
         )
         self._steps_from_anchor += taken
@@ -188,7 +190,7 @@ class SplineSolver(Solver):
         edge = self._conditions.edge(end, self._nodes)
         kept = fields[LOG_R].copy()
         code, marker = balance.solve_balance(
-            fields[LOG_R], fields[N], float(self._scalars[drive.TENSION]), shape, edge
+            fields, float(self._scalars[drive.TENSION]), shape, edge
         )
         if code == balance.BALANCED:
             return None
