@@ -14,7 +14,7 @@ from cellcrawl.starts import CellState, PerturbedCircle, RandomPerturbation
 
 POINTS: Final = ((26, 600), (24, 540), (36, 560), (16, 600), (56, 560))
 LAWS: Final = ("printed", "consistent")
-REFERENCE_RTOL: Final = 1e-10
+REFERENCE_RTOL: Final = 1e-9
 
 
 @dataclass(frozen=True)
@@ -71,9 +71,8 @@ def summary(frame: Frame) -> np.ndarray:
 def reference(case: Case) -> np.ndarray:
     """Return the converged `summary` of a case, by the adaptive solver at its tightest."""
     scheme = SOLVERS["adaptive"]
-    solver = scheme(
-        case.start(scheme.start_nodes(256)), case.conditions, nodes=256, rtol=REFERENCE_RTOL
-    )
+    start = case.start(scheme.start_nodes(256, rtol=REFERENCE_RTOL))
+    solver = scheme(start, case.conditions, nodes=256, rtol=REFERENCE_RTOL)
     broken = solver.advance(case.t_end)
     if broken is not None:
         raise RuntimeError(f"no reference for {case.label}: {broken.message}")

@@ -88,7 +88,8 @@ def _solve(name: str, case: Case, **options: Any) -> tuple[np.ndarray, int]:
     """Return the summary and the most nodes used; NaN if the run broke down."""
     scheme = SOLVERS[name]
     nodes = scheme.checked_nodes(options.pop("nodes", None))
-    solver = scheme(case.start(scheme.start_nodes(nodes)), case.conditions, nodes=nodes, **options)
+    start = case.start(scheme.start_nodes(nodes, **options))
+    solver = scheme(start, case.conditions, nodes=nodes, **options)
     if solver.advance(case.t_end) is not None:
         return np.full(3, np.nan), nodes
     most = int(solver.diagnostics().get("most_nodes", nodes))

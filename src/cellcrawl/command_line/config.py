@@ -14,7 +14,7 @@ from cellcrawl.starts import Eigenmode, FromOutline, PerturbedCircle, RandomPert
 from cellcrawl.validation import known_names, table
 
 _TABLES = ("parameters", "schedule", "start", "run")
-_RUN = ("t_end", "save_every", "solver", "nodes", "dt")
+_RUN = ("t_end", "save_every", "solver", "nodes", "rtol", "dt")
 _STARTS: dict[str, Callable[..., Start]] = {
     kind.__name__: kind
     for kind in (RandomPerturbation, PerturbedCircle, Eigenmode, FromOutline, FromRun)

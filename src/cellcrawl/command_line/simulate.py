@@ -27,6 +27,12 @@ SHOWN = Parameters(r_on=26.0, zeta_1=600.0)
 @click.option("--seed", type=int, metavar="NUMBER", help="Seed of the random start.  [default: 1]")
 @click.option("--solver", metavar="NAME", help="Numerical scheme.")
 @click.option("--nodes", type=int, metavar="NUMBER", help="Nodes on the edge.")
+@click.option(
+    "--rtol",
+    type=float,
+    metavar="NUMBER",
+    help="Relative tolerance of --solver adaptive.  [default: 1e-4]",
+)
 @click.option("--dt", type=float, metavar="TIME", help="Time step of --solver paper.")
 @click.option(
     "--config",
@@ -51,6 +57,7 @@ def simulate(
     seed: int | None,
     solver: str | None,
     nodes: int | None,
+    rtol: float | None,
     dt: float | None,
     config: Path | None,
     output: Path | None,
@@ -94,6 +101,7 @@ def simulate(
         "save_every": save_every,
         "solver": solver,
         "nodes": nodes,
+        "rtol": rtol,
         "dt": dt,
     }
     settings = {**given.run, **{name: value for name, value in flags.items() if value is not None}}

@@ -48,8 +48,8 @@ def from_path(path: np.ndarray, nodes: int) -> tuple[Curve, np.ndarray]:
         raise InputError("the path stops or turns back on itself: its points must keep moving on")
     mean_speed = float(speed.mean())
     lead = fourier.integral(speed - mean_speed, 2.0 * math.pi)
-    ahead = fourier.TrigonometricSeries(lead, 1e-16 * mean_speed)
-    pace = fourier.TrigonometricSeries(speed, 1e-8 * mean_speed)
+    ahead = fourier.TrigonometricSeries(lead)
+    pace = fourier.TrigonometricSeries(speed)
     target = 2.0 * math.pi * np.arange(nodes) / nodes
     parameter = np.interp(
         mean_speed * np.append(target, 2.0 * math.pi),
@@ -63,7 +63,7 @@ def from_path(path: np.ndarray, nodes: int) -> tuple[Curve, np.ndarray]:
             break
     if not np.max(np.abs(miss)) < 1e-9:
         raise InputError("the path has corners too sharp to follow: smooth it or give more samples")
-    series = fourier.TrigonometricSeries(path - path.mean(), 1e-16 * mean_speed)
+    series = fourier.TrigonometricSeries(path - path.mean())
     theta = np.unwrap(np.angle(series(parameter, order=1)))
     start = complex(path[0])
     curve = Curve(theta, 2.0 * math.pi * mean_speed, np.array([start.real, start.imag]))

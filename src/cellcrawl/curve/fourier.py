@@ -6,6 +6,12 @@ import math
 
 import numpy as np
 
+from cellcrawl._compile import kernel
+
+_FINER = 8  # grid refinement before local interpolation
+TAPS = 12
+BEFORE = 5  # samples before the one at or left of a place
+
 
 def wavenumbers(count: int) -> np.ndarray:
     """Integer wavenumbers of ``np.fft.fft`` for ``count`` samples."""
@@ -47,23 +53,55 @@ def resample(samples: np.ndarray, count: int) -> np.ndarray:
 
 
 class TrigonometricSeries:
-    """The trigonometric interpolant of periodic samples, to be evaluated anywhere.
+    """The trigonometric interpolant of well-resolved periodic samples, to be evaluated anywhere.
 
-    Modes of an amplitude up to ``floor`` are dropped: where samples resolve the function well, most
-    of its modes are rounding.
+    It is read off an eight times finer grid by local polynomials through twelve points, which is
+    exact to rounding for waves of at least sixteen samples and to 1e-9 of a wave of four.
     """
 
-    def __init__(self, samples: np.ndarray, floor: float = 0.0) -> None:
-        amplitudes = np.fft.fft(samples) / samples.size
-        kept = np.abs(amplitudes) > floor
-        self._k = wavenumbers(samples.size)[kept]
-        self._amplitudes = amplitudes[kept]
+    def __init__(self, samples: np.ndarray) -> None:
+        self._spectrum = np.fft.fft(samples)
+        self._fine: dict[int, np.ndarray] = {}
 
     def __call__(self, angle: np.ndarray, order: int = 0) -> np.ndarray:
         """Complex values of the derivative of the given order at ``angle`` (period 2 pi)."""
-        weights = self._amplitudes * (1j * self._k) ** order
-        result = np.empty(angle.size, complex)
-        for start in range(0, angle.size, 256):
-            part = slice(start, start + 256)
-            result[part] = np.exp(1j * np.outer(angle[part], self._k)) @ weights
-        return result
+        if order not in self._fine:
+            self._fine[order] = self._on_fine_grid(order)
+        return local_values(self._fine[order], np.ascontiguousarray(angle, dtype=float))
+
+    def _on_fine_grid(self, order: int) -> np.ndarray:
+        count = self._spectrum.size
+        half = count // 2
+        waves = self._spectrum * (1j * wavenumbers(count)) ** order
+        padded = np.zeros(_FINER * count, complex)
+        padded[: count - half] = waves[: count - half]
+        padded[-half:] = waves[-half:]
+        return np.asarray(np.fft.ifft(padded) * _FINER)
+
+
+@kernel
+def local_values(samples: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Values between equally spaced samples of period 2 pi, by polynomials through `TAPS`."""
+    count = samples.size
+    result = np.empty(angle.size, samples.dtype)
+    weights = np.empty(TAPS)
+    for i in range(angle.size):
+        place = angle[i] * (count / (2.0 * math.pi))
+        first = math.floor(place)
+        lagrange_weights(place - first, weights)
+        value = 0.0 * samples[0]
+        for tap in range(TAPS):
+            value += weights[tap] * samples[(first + tap - BEFORE) % count]
+        result[i] = value
+    return result
+
+
+@kernel
+def lagrange_weights(part: float, weights: np.ndarray) -> None:
+    """Weights of the samples from `BEFORE` before to as many after a place ``part`` beyond one."""
+    for tap in range(TAPS):
+        weight = 1.0
+        for other in range(TAPS):
+            if other != tap:
+                weight *= (part + BEFORE - other) / (tap - other)
+        weights[tap] = weight

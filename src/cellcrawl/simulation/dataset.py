@@ -45,17 +45,23 @@ TIME: Final = Field(("time",), "time", "1/k_off0")
 
 def frames_to_dataset(frames: Sequence[Frame], attributes: Mapping[str, Any]) -> xr.Dataset:
     """Return frames, all with the same number of nodes, as a Dataset of the schema."""
+    names = ("time", *FIELDS)
+    arrays = {name: np.array([getattr(frame, name) for frame in frames]) for name in names}
+    return arrays_to_dataset(arrays, attributes)
+
+
+def arrays_to_dataset(
+    arrays: Mapping[str, np.ndarray], attributes: Mapping[str, Any]
+) -> xr.Dataset:
+    """Return arrays, named as in the schema and with time, as a Dataset."""
     variables = {
-        name: (
-            field.dims,
-            np.array([getattr(frame, name) for frame in frames]),
-            {"long_name": field.long_name, "units": field.units},
-        )
+        name: (field.dims, arrays[name], {"long_name": field.long_name, "units": field.units})
         for name, field in FIELDS.items()
     }
-    time = np.array([frame.time for frame in frames], dtype=float)
     described = {"long_name": TIME.long_name, "units": TIME.units}
-    return xr.Dataset(variables, coords={"time": ("time", time, described)}, attrs=dict(attributes))
+    return xr.Dataset(
+        variables, coords={"time": ("time", arrays["time"], described)}, attrs=dict(attributes)
+    )
 
 
 def encode_attributes(attributes: Mapping[str, Any]) -> dict[str, Any]:

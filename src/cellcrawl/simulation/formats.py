@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, Final, Protocol
 
@@ -25,7 +25,7 @@ class Format(Protocol):
         self,
         path: Path,
         records: int,
-        slices: Iterator[xr.Dataset],
+        slices: Iterable[xr.Dataset],
         attributes: Mapping[str, Any],
         checkpoint: Mapping[str, np.ndarray],
     ) -> None:
@@ -47,7 +47,7 @@ class NetCDF:
         self,
         path: Path,
         records: int,
-        slices: Iterator[xr.Dataset],
+        slices: Iterable[xr.Dataset],
         attributes: Mapping[str, Any],
         checkpoint: Mapping[str, np.ndarray],
     ) -> None:
@@ -62,9 +62,11 @@ class NetCDF:
                     file.variables[name][written : written + count] = variable.values
                 written += count
             file.attrs.update(_netcdf_attributes(attributes))
-        _checkpoint_dataset(checkpoint).to_netcdf(
-            path, engine="h5netcdf", group=_CHECKPOINT, mode="a"
-        )
+            group = file.create_group(_CHECKPOINT)
+            for name, array in checkpoint.items():
+                dims = tuple(f"{name}_{axis}" for axis in range(array.ndim))
+                group.dimensions.update(zip(dims, array.shape, strict=True))
+                group.create_variable(name, dims, data=array)
 
     def read_checkpoint(self, path: Path) -> dict[str, np.ndarray]:
         with xr.open_dataset(path, engine="h5netcdf", group=_CHECKPOINT) as saved:
@@ -84,7 +86,7 @@ class Zarr:
         self,
         path: Path,
         records: int,
-        slices: Iterator[xr.Dataset],
+        slices: Iterable[xr.Dataset],
         attributes: Mapping[str, Any],
         checkpoint: Mapping[str, np.ndarray],
     ) -> None:
@@ -110,12 +112,6 @@ BY_SUFFIX: Final[dict[str, Format]] = {".nc": NETCDF, ".zarr": Zarr()}
 def by_suffix(path: Path) -> Format:
     """Return the format a path's suffix asks for."""
     return BY_SUFFIX[path.suffix]
-
-
-def write_netcdf(path: Path, dataset: xr.Dataset, checkpoint: Mapping[str, np.ndarray]) -> None:
-    """Write a small dataset and its checkpoint to one netCDF file."""
-    dataset.to_netcdf(path, engine="h5netcdf")
-    _checkpoint_dataset(checkpoint).to_netcdf(path, engine="h5netcdf", group=_CHECKPOINT, mode="a")
 
 
 def _create(file: h5netcdf.File, first: xr.Dataset, total: int) -> None:

@@ -71,7 +71,8 @@ class StoreRecorder:
         return size > BLOCK_BYTES or time.monotonic() - self._flushed > BLOCK_SECONDS
 
     def commit(self, checkpoint: Checkpoint, attributes: Mapping[str, Any]) -> None:
-        self._write(self._frames, checkpoint, attributes)
+        block = frames_to_dataset(self._frames, {}) if self._frames else None
+        self._store.write_block(self._records, block, checkpoint, encode_attributes(attributes))
         self._records += len(self._frames)
         self._frames = []
         self._flushed = time.monotonic()
@@ -81,12 +82,7 @@ class StoreRecorder:
     ) -> xr.Dataset:
         frames = [*self._frames, closing] if closing is not None else self._frames
         on_grid = self._records + len(self._frames)
-        self._write(frames, checkpoint, {**attributes, "records_on_grid": on_grid})
-        self._store.consolidate()
+        last = {**encode_attributes(attributes), "records_on_grid": on_grid}
+        block = frames_to_dataset(frames, {}) if frames else None
+        self._store.finish(self._records, block, checkpoint, last)
         return open_run(self._store.path)
-
-    def _write(
-        self, frames: list[Frame], checkpoint: Checkpoint, attributes: Mapping[str, Any]
-    ) -> None:
-        block = frames_to_dataset(frames, encode_attributes(attributes)) if frames else None
-        self._store.write_block(self._records, block, checkpoint, encode_attributes(attributes))

@@ -22,7 +22,7 @@ from cellcrawl.solvers import SOLVERS, Breakdown, Solver
 from cellcrawl.starts import RandomPerturbation, Start
 from cellcrawl.validation import real_number
 
-DEFAULT_SOLVER = "paper"
+DEFAULT_SOLVER = "adaptive"
 _CHECK_EVERY = 0.1  # longest time between two looks for a self-crossing
 _SAME_TIME = 1e-9  # relative
 
@@ -55,9 +55,10 @@ def simulate(
         Time between saved records. Records are at its multiples; if ``t_end`` is none of them, or
         the run ends early, the last valid state is one more record.
     solver : str
-        Numerical scheme. ``"paper"`` is the paper's own (options ``nodes``, ``dt``).
+        Numerical scheme. ``"adaptive"`` meets a relative tolerance ``rtol`` (default 1e-4) and
+        chooses nodes and steps itself. ``"paper"`` is the paper's own (options ``nodes``, ``dt``).
     nodes : int, optional
-        Nodes on the edge; the solver's usual number unless given.
+        Nodes in the output; 256 unless given. ``"paper"`` computes on them too, and takes 2000.
     schedule : Schedule, optional
         Parameters that change during the run.
     output : str or Path, optional
@@ -105,7 +106,7 @@ def simulate(
     scheme = solver_named(solver)
     count = scheme.checked_nodes(nodes)
     _check_options(scheme, options)
-    state = first.state(conditions.at(0.0), scheme.start_nodes(count))
+    state = first.state(conditions.at(0.0), scheme.start_nodes(count, **options))
     engine = scheme(state, conditions, nodes=count, **options)
     if crossing_at(engine, 0.0) is not None:
         raise InputError("the start crosses itself: the model needs a simple edge")

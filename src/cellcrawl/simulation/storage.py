@@ -8,9 +8,10 @@ therefore opens and resumes. When the run ends the blocks become one file, again
 from __future__ import annotations
 
 import contextlib
+import itertools
 import os
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -18,10 +19,11 @@ import numpy as np
 import xarray as xr
 
 from cellcrawl.errors import InputError, MissingExtraError, StorageError
-from cellcrawl.simulation import formats
+from cellcrawl.simulation import blocks, formats
 from cellcrawl.simulation.dataset import SCHEMA_VERSION
 
 _SLICE_RECORDS = 256
+_FIRST = "first_record"
 
 
 class Source(NamedTuple):
@@ -72,8 +74,6 @@ class RunStore:
         StorageError
             When the disk is full or cannot be written; earlier blocks stay as they are.
         """
-        dataset = xr.Dataset(attrs=dict(attributes)) if block is None else block
-        dataset.attrs["first_record"] = first
         try:
             # The folder comes into being with its first block in it, so it always opens.
             folder = self.part if self.part.exists() else self._nascent
@@ -81,9 +81,9 @@ class RunStore:
                 _remove(folder)
                 folder.mkdir(parents=True)
             number = max((_block_number(path) for path in self._blocks()), default=-1) + 1
-            target = folder / f"block-{number:06d}.nc"
+            target = folder / f"block-{number:06d}.h5"
             temporary = target.with_suffix(".tmp")
-            formats.write_netcdf(temporary, dataset, checkpoint)
+            blocks.write(temporary, block, {**attributes, _FIRST: first}, checkpoint)
             _sync(temporary)
             temporary.replace(target)
             if folder is self._nascent:
@@ -92,41 +92,68 @@ class RunStore:
             with contextlib.suppress(OSError, UnboundLocalError):
                 temporary.unlink(missing_ok=True)
             raise StorageError(
-                f"cannot write to {self.part}: {error.strerror or error}; what was saved before "
+                f"cannot write to {self.part}: {_reason(error)}; what was saved before "
                 f"stays readable, and `cellcrawl resume {self.path}` goes on once there is room"
             ) from None
 
-    def consolidate(self) -> None:
-        """Turn base and blocks into one file at `path`, then drop the blocks."""
-        if not self._blocks():
-            return
-        sources, attributes, checkpoint = self._contents()
-        attributes = {k: v for k, v in attributes.items() if k != "first_record"}
+    def finish(
+        self,
+        first: int,
+        block: xr.Dataset | None,
+        checkpoint: Mapping[str, np.ndarray],
+        attributes: Mapping[str, Any],
+    ) -> None:
+        """Turn what is there and the last records, from ``first`` on, into one file at `path`.
+
+        If that cannot be written, the last records become a block and all is as before.
+        """
         try:
-            _remove(self._merged)
-            records = sum(source.records for source in sources)
-            slices = self._slices(sources)
-            self._format.write(self._merged, records, slices, attributes, checkpoint)
-            if self.path.is_dir():
-                self.path.replace(self._previous)
-            self._merged.replace(self.path)
-            _remove(self.part)
+            self._merge(first, block, checkpoint, attributes)
         except OSError as error:
             with contextlib.suppress(OSError):
                 _remove(self._merged)
+            self.write_block(first, block, checkpoint, attributes)
             raise StorageError(
-                f"cannot write {self.path}: {error.strerror or error}; the run is complete in "
-                f"{self.part} and opens as {self.path}"
+                f"cannot write {self.path}: {_reason(error)}; the run is complete in {self.part} "
+                f"and opens as {self.path}"
             ) from None
+
+    def consolidate(self) -> None:
+        """Turn the blocks of an ended run that was killed before they became one into it."""
+        if self._blocks():
+            last = blocks.header(self._blocks()[-1])
+            first = int(last.attributes[_FIRST]) + last.records
+            self.finish(first, None, last.checkpoint, _without_first(last.attributes))
+
+    def _merge(
+        self,
+        first: int,
+        block: xr.Dataset | None,
+        checkpoint: Mapping[str, np.ndarray],
+        attributes: Mapping[str, Any],
+    ) -> None:
+        self.part.mkdir(parents=True, exist_ok=True)
+        sources = _up_to(first, self._sources())
+        records = sum(source.records for source in sources)
+        slices: Iterable[xr.Dataset] = self._slices(sources)
+        if block is not None:
+            records += block.sizes["time"]
+            slices = itertools.chain(slices, [block])
+        _remove(self._merged)
+        self._format.write(self._merged, records, slices, attributes, checkpoint)
+        if self.path.is_dir():
+            self.path.replace(self._previous)
+        self._merged.replace(self.path)
+        _remove(self.part)
 
     def open(self) -> xr.Dataset:
         """Return the run's Dataset: lazy when finished, from its blocks when not."""
         if not self._blocks():
             dataset = self._open_base()
         else:
-            sources, attributes, _ = self._contents()
-            dataset = xr.concat(list(self._slices(sources)), "time", combine_attrs="drop")
-            dataset.attrs = {k: v for k, v in attributes.items() if k != "first_record"}
+            dataset = xr.concat(list(self._slices(self._sources())), "time", combine_attrs="drop")
+            with _readable(self.part):
+                dataset.attrs = _without_first(blocks.header(self._blocks()[-1]).attributes)
         found = dataset.attrs.get("schema_version")
         if found is None:
             raise InputError(f"{self.path} is not a cellcrawl run: it has no schema_version")
@@ -139,10 +166,9 @@ class RunStore:
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         """Return the last saved state to go on from."""
-        blocks = self._blocks()
         with _readable(self.path):
-            if blocks:
-                return formats.NETCDF.read_checkpoint(blocks[-1])
+            if self._blocks():
+                return blocks.header(self._blocks()[-1]).checkpoint
             return self._format.read_checkpoint(self._base())
 
     def _base(self) -> Path:
@@ -157,36 +183,46 @@ class RunStore:
             return self._format.open(base)
 
     def _blocks(self) -> list[Path]:
-        return sorted(self.part.glob("block-*.nc")) if self.part.is_dir() else []
+        return sorted(self.part.glob("block-*.h5")) if self.part.is_dir() else []
 
-    def _contents(self) -> tuple[list[Source], dict[str, Any], dict[str, np.ndarray]]:
-        """Sources in order of their records, and attributes and checkpoint of the newest."""
-        blocks = self._blocks()
+    def _sources(self) -> list[Source]:
+        """Files in order of their records; a later one replaces what it overlaps."""
         sources = []
         with contextlib.suppress(StorageError), self._open_base() as base:
             sources.append(Source(self._base(), 0, base.sizes.get("time", 0)))
-        attributes: dict[str, Any] = {}
-        for path in blocks:
-            with _readable(path), formats.NETCDF.open(path) as block:
-                attributes = dict(block.attrs)
-                first, records = int(attributes["first_record"]), block.sizes.get("time", 0)
-            sources = [
-                Source(s.path, s.first, min(s.records, first - s.first))
-                for s in sources
-                if s.first < first
-            ]
-            if records:
-                sources.append(Source(path, first, records))
-        return sources, attributes, self.checkpoint()
+        for path in self._blocks():
+            with _readable(path):
+                header = blocks.header(path)
+            first = int(header.attributes[_FIRST])
+            sources = _up_to(first, sources)
+            if header.records:
+                sources.append(Source(path, first, header.records))
+        return sources
 
     def _slices(self, sources: list[Source]) -> Iterator[xr.Dataset]:
         """Yield the records in order, a bounded number at a time."""
-        for source in sources:
-            kind = formats.by_suffix(source.path)
-            with _readable(source.path), kind.open(source.path) as dataset:
-                for start in range(0, source.records, _SLICE_RECORDS):
-                    stop = min(start + _SLICE_RECORDS, source.records)
-                    yield dataset.isel(time=slice(start, stop)).load()
+        for path, _, records in sources:
+            with _readable(path):
+                for start in range(0, records, _SLICE_RECORDS):
+                    part = slice(start, min(start + _SLICE_RECORDS, records))
+                    if path.parent == self.part and path.suffix == ".h5":
+                        yield blocks.read(path, part)
+                    else:
+                        with self._format.open(path) as dataset:
+                            yield dataset.isel(time=part).load()
+
+
+def _up_to(first: int, sources: list[Source]) -> list[Source]:
+    """Sources of the records before ``first``."""
+    return [
+        Source(path, start, min(records, first - start))
+        for path, start, records in sources
+        if start < first
+    ]
+
+
+def _without_first(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in attributes.items() if name != _FIRST}
 
 
 def open_run(path: str | Path) -> xr.Dataset:
@@ -242,6 +278,10 @@ def _readable(path: Path) -> Iterator[None]:
             raise
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise StorageError(f"cannot read {path}: {reason}") from None
+
+
+def _reason(error: OSError) -> str:
+    return str(error.strerror or error).splitlines()[0]
 
 
 def _block_number(path: Path) -> int:

@@ -22,6 +22,8 @@ from cellcrawl.validation import real_number, whole_number
 
 _STEPS_PER_CALL = 5000  # between two looks at Ctrl-C
 _START_NODES = 1024
+_USUAL_RTOL = 1e-4
+_TIGHT_RTOL = 1e-6  # below it a start is sampled more finely
 _STIFF_TENSION = 0.5  # share of the tension in the fastest decay from which second order is better
 _STIFF_TENSION_RTOL = 3e-6  # down to this tolerance
 _SPATIAL_SHARE = 0.005  # of what the grid misses, in the error at t = 5
@@ -49,7 +51,7 @@ class AdaptiveSolver(Solver):
         time: float = 0.0,
         *,
         nodes: int = 256,
-        rtol: float = 1e-4,
+        rtol: float = _USUAL_RTOL,
         max_nodes: int = 4096,
         min_nodes: int = 64,
     ) -> None:
@@ -81,9 +83,10 @@ class AdaptiveSolver(Solver):
         return 256 if nodes is None else whole_number("nodes", nodes, 16, 100_000)
 
     @classmethod
-    def start_nodes(cls, nodes: int) -> int:
+    def start_nodes(cls, nodes: int, **options: Any) -> int:
         """Return the nodes to sample a start on; the solver then takes as many as it needs."""
-        return _START_NODES
+        rtol = real_number("rtol", options.get("rtol", _USUAL_RTOL), 1e-10, 1e-2)
+        return _START_NODES if rtol >= _TIGHT_RTOL else 4 * _START_NODES
 
     def advance(self, target: float) -> Breakdown | None:
         while self.time < target:
@@ -150,6 +153,8 @@ class AdaptiveSolver(Solver):
         self._framed = None
         self._hold(np.array(checkpoint["states"], dtype=float))
         self._log_rate = np.array(checkpoint["log_rate"], dtype=float)
+        current = self._states[drive.CURRENT]
+        stiffness(current, self._log_rate, self._midpoints(self.time), self._work)
 
     def options(self) -> dict[str, Any]:
         return {
@@ -226,6 +231,7 @@ class AdaptiveSolver(Solver):
         edge = self._midpoints(self.time)
         current, trial = self._states[drive.CURRENT], self._states[drive.TRIAL]
         self._counters[drive.RATES] += 1
+        stiffness(current, self._log_rate, edge, self._work)
         if not rates(current, trial, self._log_rate, edge, self._work):
             return False
         self._states[drive.CURRENT_RATES] = trial
@@ -270,7 +276,7 @@ class AdaptiveSolver(Solver):
     def _local_tolerance(self) -> float:
         """Local error that leaves a global error of about ``rtol`` at t = 5 (measured)."""
         if self._counters[drive.ORDER] == chebyshev.ORDER:
-            return float((8.0 * self._rtol) ** 1.5)
+            return float((10.0 * self._rtol) ** 1.5)
         return float(10.0 * self._rtol * (self._rtol / 1e-4) ** 0.15)
 
     def _fit_grid(self) -> Breakdown | None:
@@ -317,5 +323,5 @@ class AdaptiveSolver(Solver):
 
 
 def _grid_tolerance(rtol: float) -> float:
-    """Part of the slopes of a formed cell that a grid may miss for an error of ``rtol`` (measured)."""
-    return float(0.5 * (28.6 * rtol) ** 0.625)
+    """Part of slopes of size 1 that a grid may miss for an error of ``rtol`` (measured)."""
+    return float(0.32 * (28.6 * rtol) ** 0.625)

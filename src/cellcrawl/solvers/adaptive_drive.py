@@ -92,7 +92,7 @@ def run(
     # a second-order step's estimate is of third order: take the power that goes as its square
     power = 2.0 / 3.0 if order == chebyshev.ORDER else 1.0
     amplified = 0.05 if order == chebyshev.ORDER else 0.002  # into the error at t = 5
-    weight = 1.0 if order == chebyshev.ORDER else 20.0
+    weight = 1.0 if order == chebyshev.ORDER else 6.0
     tried = 0
     while control[TIME] < target:
         if tried == most_steps:

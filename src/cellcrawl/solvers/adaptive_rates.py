@@ -1,7 +1,7 @@
 """Rates of change of the whole state on the staggered grid, and how stiff they are.
 
-A state is one flat array: ``w = theta - winding`` at the nodes and ``n`` at the midpoints, each with
-its halo, then the scalars length, tension, area and position of node 0. Kernels use the paper's
+A state is one flat array: ``w = theta - winding`` at the nodes and ``n`` at the midpoints, both
+with halos, then the scalars length, tension, area and position of node 0. Kernels use the paper's
 letters: ``U`` edge velocity, ``T`` tangential velocity of the nodes, ``y = log r``.
 """
 
@@ -43,7 +43,8 @@ from cellcrawl.solvers.staggered import (
 LENGTH, TENSION, AREA, ORIGIN_X, ORIGIN_Y = range(5)  # scalars, after the two fields
 SCALARS: Final = 8  # room kept for them
 TENSION_RATE: Final = 7  # row of `edge` after the local parameters
-WORK_ROWS: Final = 6
+WORK_ROWS: Final = 5
+RATE: Final = 4  # row of `work` that keeps r beside the last y, from stage to stage
 _HALO = np.uint64(HALO)
 _NEAR = 0.12  # a first step in log r this short is followed by a second that reaches rounding
 _SETTLED = 4e-6  # a second step this short leaves an error of its cube
@@ -84,28 +85,29 @@ def velocities(
     """Solve the force balance at the midpoints; False where it has no root.
 
     Leaves ``log r`` in ``y``, shape (nodes,), and in the rows of ``work``, which have halos: ``U``,
-    ``kappa U`` and ``r_on (1 - n) - r n``.
+    ``kappa U`` and ``r_on (1 - n) - r n``. Row `RATE` must hold ``exp(y)``, where `stiffness` puts
+    it.
     """
     nodes = y.size
     per_spacing = nodes / length
     winding = 2.0 * math.pi / length
     r_on, zeta_1, epsilon = edge[0], edge[1], edge[3]
     h, sigma_c, v_p = edge[4], edge[5], edge[6]
-    speed, stretch, binding, kappa, rate = work[0], work[1], work[2], work[3], work[4]
+    speed, stretch, binding, kappa, rate = work[0], work[1], work[2], work[3], work[RATE]
     unsettled = 0
     for i in range(np.uint64(nodes)):
         j = i + _HALO
         kappa[i] = winding + per_spacing * difference_ahead(w, j)
         force = driving_force(sigma, kappa[i], sigma_c[i], h[i])
         near = y[i]
-        r = exponential(near)
+        r = rate[i]
         first = halley_step(near, r, n[j], zeta_1[i], force)
         near = near + first
         r = r * growth(first)
         second = halley_step(near, r, n[j], zeta_1[i], force)
         near = near + second
         rate[i] = r * (1.0 + second * (1.0 + 0.5 * second))
-        good = (abs(first) < _NEAR) & (abs(second) < _SETTLED) & (near >= 0.0)
+        good = (abs(first) < _NEAR) & (abs(second) < _SETTLED) & (near >= 0.0) & (r > 0.5)
         unsettled += 0 if good else 1
         y[i] = near
     if unsettled > 0:
@@ -181,6 +183,7 @@ def stiffness(
     """Bound on the fastest decay, and the decay of the tension by itself.
 
     Diffusion and shape, or the tension, each with the reaction. ``y`` must belong to ``state``.
+    Renews ``r = exp(y)`` in row `RATE` of ``work``.
     """
     nodes = y.size
     span = nodes + 2 * HALO
@@ -188,9 +191,11 @@ def stiffness(
     per_spacing = nodes / scalars[LENGTH]
     r_on, zeta_1, epsilon, h = edge[0], edge[1], edge[3], edge[4]
     reaction, yielding, shape, diffusion = work[0], work[1], work[2], work[3]
+    rate = work[RATE]
     for i in range(np.uint64(nodes)):
         j = i + _HALO
         r = exponential(y[i])
+        rate[i] = r
         slope = friction_slope(y[i], r, n[j], zeta_1[i])
         share = r * (1.0 + y[i]) / slope  # d(r log r) / dF: how much of a force becomes flow
         slip = n[j] * r * zeta_1[i] * y[i] / slope  # fewer linkers, faster unbinding

@@ -94,8 +94,8 @@ class Solver(ABC):
 
     @classmethod
     @abstractmethod
-    def start_nodes(cls, nodes: int) -> int:
-        """Return on how many nodes the start should be given."""
+    def start_nodes(cls, nodes: int, **options: Any) -> int:
+        """Return on how many nodes the start should be given, with these options."""
 
     @abstractmethod
     def advance(self, target: float) -> Breakdown | None:

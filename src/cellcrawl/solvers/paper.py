@@ -67,7 +67,7 @@ class PaperSolver(Solver):
         return 2000 if nodes is None else whole_number("nodes", nodes, 16, 100_000)
 
     @classmethod
-    def start_nodes(cls, nodes: int) -> int:
+    def start_nodes(cls, nodes: int, **options: Any) -> int:
         return nodes
 
     def advance(self, target: float) -> Breakdown | None:

@@ -23,9 +23,10 @@ NODE_COUNTS: Final[tuple[int, ...]] = (
     3584,
     4096,
 )
-COARSEN: Final = 0.4  # go to a coarser grid only if it misses this part of what is allowed
-COARSER_MISSES: Final = 15.0  # about how much more the next coarser grid misses
-LEAST_ALLOWANCE: Final = 0.2
+COARSEN: Final = 0.6  # go to a coarser grid only if it misses this part of what is allowed
+COARSER_MISSES: Final = 7.0  # about how much more the next coarser grid misses
+LEAST_ALLOWANCE: Final = 0.25
+MOST_ALLOWANCE: Final = 2.0
 _REFINE = 1.2  # least factor of a refinement
 _SCALE = 2.2
 _DOUBLE_DIFFERENCES = 5
@@ -64,7 +65,7 @@ def missed(state: np.ndarray, nodes: int, work: np.ndarray) -> tuple[float, floa
 @kernel
 def allowance(allowed: float, contrast: float) -> float:
     """What may be missed now: less while the waves are small, for their errors grow with them."""
-    return allowed * min(max(contrast, LEAST_ALLOWANCE), 1.0)
+    return allowed * min(max(contrast, LEAST_ALLOWANCE), MOST_ALLOWANCE)
 
 
 def spectrum(angle: np.ndarray, bound: np.ndarray) -> np.ndarray:
