@@ -1,6 +1,6 @@
 """Derive the fourth-order stabilised methods and write their table of coefficients.
 
-    python tools/stabilised_scheme.py src/cellcrawl/solvers/stabilised_coefficients.txt
+    python tools/stabilised_scheme.py src/cellcrawl/solvers/adaptive/stabilised_coefficients.txt
 
 The structure is that of ROCK4 (Abdulle, SIAM J. Sci. Comput. 23, 2002, 2041-2054): a stability
 polynomial of degree s and order 4 is split into its s - 4 real roots, made by a three-term

@@ -9,15 +9,15 @@ import cellcrawl as cc
 from cellcrawl.curve import first_crossing
 
 
-@pytest.fixture(scope="module")
-def torn(tmp_path_factory):
+@pytest.fixture(scope="module", params=["paper", "adaptive"])
+def torn(request, tmp_path_factory):
     # MODEL.md section 6: 20-33 % of seeds at (16, 600) tear; this is one of them.
     path = tmp_path_factory.mktemp("torn") / "run.nc"
     return cc.simulate(
         cc.Parameters(r_on=16, zeta_1=600),
         60.0,
         start=cc.RandomPerturbation(seed=7),
-        solver="paper",
+        solver=request.param,
         nodes=1000,
         output=path,
     )

@@ -15,11 +15,15 @@ import cellcrawl as cc
 from cellcrawl.parameters import DESCRIPTIONS
 from cellcrawl.simulation.dataset import FIELDS, check_run
 from cellcrawl.simulation.events import STATUSES
-from tests.conftest import Given
+from cellcrawl.solvers import SOLVERS as SOLVER_TYPES
+from tests.conftest import Given, check_start
 
 
 def short(parameters: cc.Parameters | None = None, t_end: float = 0.3, **options):
-    return cc.simulate(parameters, t_end, solver="paper", **{"nodes": 100, **options})
+    return cc.simulate(parameters, t_end, **{"solver": "paper", "nodes": 100, **options})
+
+
+SOLVERS = pytest.mark.parametrize("solver", ["paper", "adaptive"])
 
 
 def test_dataset_keeps_the_contract():
@@ -59,8 +63,9 @@ def test_records_are_multiples_of_save_every_and_the_end(t_end, save_every, time
     assert np.allclose(short(t_end=t_end, save_every=save_every)["time"], times, atol=1e-12)
 
 
-def test_saving_more_often_does_not_change_the_run():
-    seldom, often = short(save_every=0.3), short(save_every=0.0137)
+@SOLVERS
+def test_saving_more_often_does_not_change_the_run(solver):
+    seldom, often = (short(save_every=every, solver=solver) for every in (0.3, 0.015))
     for name in FIELDS:
         assert np.array_equal(seldom[name].values[-1], often[name].values[-1]) or name == "time"
 
@@ -71,22 +76,35 @@ def test_a_record_between_two_steps_lies_between_them():
     assert math.isclose(length[1], 0.5 * (length[0] + length[2]), rel_tol=1e-12)
 
 
-def test_same_seed_same_bits_and_another_seed_another_run():
-    first, again, other = (short(start=cc.RandomPerturbation(seed=s)) for s in (5, 5, 6))
+@SOLVERS
+def test_same_seed_same_bits_and_another_seed_another_run(solver):
+    first, again, other = (
+        short(start=cc.RandomPerturbation(seed=s), solver=solver) for s in (5, 5, 6)
+    )
     assert all(np.array_equal(first[name], again[name]) for name in FIELDS)
     assert not np.array_equal(first["x"], other["x"])
 
 
-def test_jump_of_the_schedule_is_hit_between_steps():
+def test_jump_of_the_schedule_changes_nothing_before_it():
     jump = cc.Schedule({"r_on": [(0.1005, 25.0), (0.1005, 60.0)]})
     plain, changed = short(), short(schedule=jump)
     before = plain["time"] <= 0.1
     assert np.array_equal(plain["x"][before], changed["x"][before])
+
+
+@SOLVERS
+def test_jump_of_the_schedule_is_hit_between_steps(solver):
+    jump = cc.Schedule({"r_on": [(0.1005, 25.0), (0.1005, 60.0)]})
+    tight = {"solver": solver} if solver == "paper" else {"solver": solver, "rtol": 1e-8}
+    start = check_start(cc.Parameters())
+    plain, changed = short(start=start, **tight), short(start=start, schedule=jump, **tight)
     assert not np.allclose(plain["bound_fraction"][-1], changed["bound_fraction"][-1])
     # From the jump on the cell is that of a new run with the new value, started from its state.
-    state = cc.FromRun(short(t_end=0.1005)).state(cc.Parameters(), 100)
-    after = short(cc.Parameters(r_on=60), t_end=0.1995, start=Given(state))
-    assert np.allclose(after["bound_fraction"][-1], changed["bound_fraction"][-1], atol=1e-9)
+    nodes = SOLVER_TYPES[solver].start_nodes(100, **tight)
+    first = short(t_end=0.1005, start=start, **{**tight, "nodes": nodes})
+    state = cc.FromRun(first).state(cc.Parameters(), nodes)
+    after = short(cc.Parameters(r_on=60), t_end=0.1995, start=Given(state), **tight)
+    assert np.allclose(after["bound_fraction"][-1], changed["bound_fraction"][-1], atol=1e-6)
 
 
 def test_ramp_is_what_a_jump_at_every_step_gives():
@@ -172,18 +190,21 @@ numbers = {
 }
 
 
-@hypothesis.settings(max_examples=60)
+@hypothesis.settings(max_examples=100)
 @hypothesis.given(
+    solver=st.sampled_from(["paper", "adaptive"]),
     values=st.fixed_dictionaries({}, optional=numbers),
     elasticity=st.sampled_from(["printed", "consistent"]),
     seed=st.integers(0, 1000),
     amplitude=st.sampled_from([1e-4, 1e-2]),
 )
-def test_any_parameters_end_in_a_named_status_without_nan(values, elasticity, seed, amplitude):
+def test_any_parameters_end_in_a_named_status_without_nan(
+    solver, values, elasticity, seed, amplitude
+):
     parameters = cc.Parameters(**values, elasticity=elasticity)
     start = cc.RandomPerturbation(seed=seed, amplitude=amplitude, modes=5)
     try:
-        dataset = short(parameters, 0.02, nodes=48, start=start, save_every=0.01)
+        dataset = short(parameters, 0.02, nodes=48, start=start, save_every=0.01, solver=solver)
     except cc.InputError as refusal:
         event(f"refused: {str(refusal)[:30]}")
         return

@@ -28,8 +28,13 @@ cc.simulate(cc.Parameters(r_on=26), float(sys.argv[2]), solver="paper", nodes=20
 """
 
 
+SOLVERS = pytest.mark.parametrize("solver", ["paper", "adaptive"])
+
+
 def short(t_end: float, **options) -> xr.Dataset:
-    return cc.simulate(cc.Parameters(r_on=26), t_end, solver="paper", **{"nodes": 100, **options})
+    return cc.simulate(
+        cc.Parameters(r_on=26), t_end, **{"solver": "paper", "nodes": 100, **options}
+    )
 
 
 def same_bits(first: xr.Dataset, second: xr.Dataset) -> bool:
@@ -53,14 +58,17 @@ def test_a_saved_run_reads_back_as_it_was(tmp_path, suffix):
     assert [path.name for path in tmp_path.iterdir()] == [f"run.{suffix}"]
 
 
+@SOLVERS
 @pytest.mark.parametrize("suffix", ["nc", "zarr"])
 @pytest.mark.parametrize(
     ("halfway", "save_every"), [(0.5, 0.1), (0.52, 0.1), (0.3337, 0.1), (0.5003, 0.00037)]
 )
-def test_resumed_run_has_the_bits_of_an_uninterrupted_one(tmp_path, suffix, halfway, save_every):
+def test_resumed_run_has_the_bits_of_an_uninterrupted_one(
+    tmp_path, solver, suffix, halfway, save_every
+):
     path = tmp_path / f"run.{suffix}"
     schedule = cc.Schedule({"r_on": [(0.2, 26.0), (0.4, 40.0), (0.7, 40.0), (0.7, 20.0)]})
-    options = {"save_every": save_every, "schedule": schedule}
+    options = {"save_every": save_every, "schedule": schedule, "solver": solver}
     short(halfway, output=path, **options).close()
     resumed = cc.resume(path, 1.0)
     straight = short(1.0, **options)
@@ -68,17 +76,20 @@ def test_resumed_run_has_the_bits_of_an_uninterrupted_one(tmp_path, suffix, half
     assert fixed_attributes(resumed) == fixed_attributes(straight)
 
 
-def test_resuming_many_times_changes_nothing(tmp_path):
+@SOLVERS
+def test_resuming_many_times_changes_nothing(tmp_path, solver):
     path = tmp_path / "run.nc"
-    short(0.1, output=path).close()
+    short(0.1, output=path, solver=solver).close()
     for t_end in (0.2, 0.25, 0.3, 0.77, 1.0):
         cc.resume(path, t_end).close()
-    assert same_bits(cc.open_run(path), short(1.0))
+    assert same_bits(cc.open_run(path), short(1.0, solver=solver))
 
 
-def test_writing_blocks_does_not_change_the_run(tmp_path, monkeypatch):
+@SOLVERS
+def test_writing_blocks_does_not_change_the_run(tmp_path, monkeypatch, solver):
     monkeypatch.setattr(recorder, "BLOCK_SECONDS", 0.0)
-    assert same_bits(short(0.5, output=tmp_path / "run.nc"), short(0.5))
+    written = short(0.5, output=tmp_path / "run.nc", solver=solver)
+    assert same_bits(written, short(0.5, solver=solver))
 
 
 def test_resume_where_it_ended_returns_the_run_and_before_is_refused(tmp_path):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import partial
 from typing import NamedTuple
 
 from cellcrawl.bench.cases import LAWS, POINTS, Case, error, reference
@@ -55,7 +56,7 @@ def _speed(quick: bool) -> Iterator[Target]:
     yield _against_refined(Case(26, 600, t_end=5.0))
     for law, limit in (("printed", 0.12), ("consistent", 0.2)):
         case = Case(26, 600, law, t_end=100.0, random=True)
-        _, seconds, _ = timed(lambda case=case: _solve("adaptive", case))
+        _, seconds, _ = timed(partial(_solve, "adaptive", case))
         yield Target(
             f"{case.label}, t = 0...100, default tolerance, one core",
             f"<= {limit:g} s",
@@ -66,8 +67,8 @@ def _speed(quick: bool) -> Iterator[Target]:
 
 def _against_published(case: Case, asked: float) -> Target:
     """Time to t_end against the paper's scheme as published, and both errors at t = 5."""
-    _, fast, _ = timed(lambda: _solve("adaptive", case))
-    _, slow, _ = timed(lambda: _solve("paper", case))
+    _, fast, _ = timed(partial(_solve, "adaptive", case))
+    _, slow, _ = timed(partial(_solve, "paper", case))
     early = Case(case.r_on, case.zeta_1, case.elasticity, t_end=5.0, random=case.random)
     truth = reference(early)
     errors = [error(_solve(name, early)[0], truth) for name in ("adaptive", "paper")]
@@ -84,10 +85,10 @@ def _against_published(case: Case, asked: float) -> Target:
 def _against_refined(case: Case) -> Target:
     """Time against the paper's scheme refined until its error is 1e-4 too."""
     truth = reference(case)
-    _, fast, _ = timed(lambda: _solve("adaptive", case))
+    _, fast, _ = timed(partial(_solve, "adaptive", case))
     nodes, dt, miss, slow = 2000, 1e-3, math.inf, math.nan
     while miss > 1e-4 and dt > 1e-6:
-        found, slow, _ = timed(lambda step=dt: _solve("paper", case, nodes=nodes, dt=step))
+        found, slow, _ = timed(partial(_solve, "paper", case, nodes=nodes, dt=dt))
         miss = error(found, truth)
         dt /= max(2.0, min(miss / 1e-4, 8.0))
     return Target(

@@ -15,10 +15,10 @@ import numpy as np
 
 from cellcrawl._compile import kernel
 from cellcrawl.bench.cases import Case
-from cellcrawl.solvers import adaptive_state as layout
-from cellcrawl.solvers.adaptive_frame import frame
-from cellcrawl.solvers.adaptive_rates import TENSION_RATE, WORK_ROWS, rates
-from cellcrawl.solvers.staggered import HALO
+from cellcrawl.solvers.adaptive import state as layout
+from cellcrawl.solvers.adaptive.frame import frame
+from cellcrawl.solvers.adaptive.rates import TENSION_RATE, WORK_ROWS, rates
+from cellcrawl.solvers.adaptive.staggered import HALO
 
 _SCALARS = 5  # length, tension, area, position of node 0
 
@@ -110,7 +110,7 @@ def bdf(system: FixedGrid, t_end: float, rtol: float) -> np.ndarray:
 
 def available() -> dict[str, Callable[[FixedGrid, float, float], np.ndarray]]:
     """Return the rivals that are installed, by name."""
-    found = {}
+    found: dict[str, Callable[[FixedGrid, float, float], np.ndarray]] = {}
     if importlib.util.find_spec("sksundae") is not None:
         found["CVODE BDF+GMRES"] = cvode
     if importlib.util.find_spec("scipy") is not None:

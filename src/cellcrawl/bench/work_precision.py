@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -51,7 +52,7 @@ def measure(quick: bool = False, times: tuple[float, ...] = (5.0, 20.0)) -> Iter
 
 def _adaptive(case: Case, truth: np.ndarray, quick: bool) -> Iterator[Row]:
     for rtol in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)[: 5 if quick else 6]:
-        found, seconds, nodes = timed(lambda rtol=rtol: _solve("adaptive", case, rtol=rtol))
+        found, seconds, nodes = timed(partial(_solve, "adaptive", case, rtol=rtol))
         yield _row(case, "adaptive", f"rtol {rtol:g}", found, truth, seconds, nodes)
 
 
@@ -60,7 +61,7 @@ def _paper(case: Case, truth: np.ndarray, quick: bool) -> Iterator[Row]:
     for nodes, dt in steps:
         if case.t_end > 5.0 and dt is not None:
             continue
-        found, seconds, _ = timed(lambda n=nodes, dt=dt: _solve("paper", case, nodes=n, dt=dt))
+        found, seconds, _ = timed(partial(_solve, "paper", case, nodes=nodes, dt=dt))
         setting = f"N {nodes}, dt {dt or 'usual'}"
         yield _row(case, "paper", setting, found, truth, seconds, nodes)
 

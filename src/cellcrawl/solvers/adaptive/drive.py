@@ -11,9 +11,16 @@ from typing import Final
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.solvers import chebyshev, stabilised
-from cellcrawl.solvers.adaptive_rates import stiffness
-from cellcrawl.solvers.resolution import COARSEN, COARSER_MISSES, allowance, missed
+from cellcrawl.solvers.adaptive import chebyshev, stabilised
+from cellcrawl.solvers.adaptive.rates import stiffness
+from cellcrawl.solvers.adaptive.resolution import (
+    COARSEN,
+    COARSER_MISSES,
+    allowance,
+    formation,
+    missed,
+)
+from cellcrawl.solvers.adaptive.staggered import HALO
 
 # rows of `states`; the last step went from PREVIOUS to CURRENT
 PREVIOUS, PREVIOUS_RATES, CURRENT, CURRENT_RATES, TRIAL, TRIAL_RATES = range(6)
@@ -28,7 +35,8 @@ PREVIOUS, PREVIOUS_RATES, CURRENT, CURRENT_RATES, TRIAL, TRIAL_RATES = range(6)
     LOCAL_ERRORS,
     CONTRAST,
     MOST_MISSED,
-) = range(9)
+    FORMATION,
+) = range(10)
 CONTROLS: Final = 12
 # entries of `counters`
 STEPS, REJECTED, RATES, FAILED_IN_A_ROW, CHECK_DUE, RESTARTING, ORDER = range(7)
@@ -108,7 +116,7 @@ def run(
         degree = degrees[k]
         counters[RATES] += degree
         relief = weight / (1.0 + h * control[TENSION_DECAY])
-        contrast = min(max(control[CONTRAST], _LEAST_CONTRAST), 1.0)
+        contrast = min(max(control[CONTRAST], _LEAST_CONTRAST), 1.0) * control[FORMATION]
         if order == chebyshev.ORDER:
             solved, error = chebyshev.step(
                 h, degree, recurrence[first[k] :], relief, contrast, states, y, edges, mixed, work
@@ -163,6 +171,8 @@ def run(
                 return RETRY
             continue
         misses, control[CONTRAST] = missed(states[CURRENT], y.size, work)
+        span = y.size + 2 * HALO
+        control[FORMATION] = formation(states[CURRENT, span : 2 * span], y.size)
         control[MOST_MISSED] = max(control[MOST_MISSED], misses)
         most = allowance(allowed, control[CONTRAST])
         if misses > most and y.size < nodes_range[1]:

@@ -9,14 +9,14 @@ import numpy as np
 
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import EDGE_ROWS, Conditions
-from cellcrawl.solvers import adaptive_drive as drive
-from cellcrawl.solvers import adaptive_state as layout
-from cellcrawl.solvers import chebyshev, resolution, stabilised
-from cellcrawl.solvers.adaptive_frame import frame
-from cellcrawl.solvers.adaptive_rates import WORK_ROWS, rates, stiffness
+from cellcrawl.solvers.adaptive import chebyshev, resolution, stabilised
+from cellcrawl.solvers.adaptive import drive as drive
+from cellcrawl.solvers.adaptive import state as layout
+from cellcrawl.solvers.adaptive.frame import frame
+from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, stiffness
+from cellcrawl.solvers.adaptive.scheme import Scheme, fourth_order_scheme
+from cellcrawl.solvers.adaptive.staggered import HALO
 from cellcrawl.solvers.base import Breakdown, Frame, Solver
-from cellcrawl.solvers.scheme import Scheme, fourth_order_scheme
-from cellcrawl.solvers.staggered import HALO
 from cellcrawl.starts.base import CellState
 from cellcrawl.validation import real_number, whole_number
 
@@ -223,6 +223,9 @@ class AdaptiveSolver(Solver):
         control[drive.LAST_ERROR] = 1.0
         _, control[drive.CONTRAST] = resolution.missed(
             self._states[drive.CURRENT], layout.nodes_of(self._states), self._work
+        )
+        control[drive.FORMATION] = resolution.formation(
+            layout.bound_with_halo(self._states[drive.CURRENT]), layout.nodes_of(self._states)
         )
         self._counters[drive.RESTARTING] = 0
         return True

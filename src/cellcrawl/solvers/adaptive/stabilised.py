@@ -13,8 +13,8 @@ from typing import Final
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.solvers.stage_rates import stage_rates
-from cellcrawl.solvers.step_error import relative_size
+from cellcrawl.solvers.adaptive.stage_rates import stage_rates
+from cellcrawl.solvers.adaptive.step_error import relative_size
 
 ORDER: Final = 4
 START, START_RATES, END, END_RATES = 2, 3, 4, 5  # rows of `states`

@@ -13,7 +13,13 @@ from typing import Final
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.solvers.staggered import HALO, difference_ahead, fill_halo, sum_of_squares
+from cellcrawl.solvers.adaptive.staggered import (
+    HALO,
+    difference_ahead,
+    fill_halo,
+    sum_of_squares,
+    total,
+)
 
 NODE_COUNTS: Final[tuple[int, ...]] = (
     *(part * 16 * 2**k for k in range(6) for part in (4, 5, 6, 7)),
@@ -30,6 +36,8 @@ MOST_ALLOWANCE: Final = 2.0
 _REFINE = 1.2  # least factor of a refinement
 _SCALE = 2.2
 _DOUBLE_DIFFERENCES = 5
+_FORMED = 0.1  # spread of the bound fraction along the edge of a formed cell
+_AMPLIFIED = 30.0  # care with the steps before (measured)
 _FLAT = 1e-6  # slopes below this are as good as none
 _HALO = np.uint64(HALO)
 _1 = np.uint64(1)
@@ -60,6 +68,21 @@ def missed(state: np.ndarray, nodes: int, work: np.ndarray) -> tuple[float, floa
     size = slope * math.sqrt(slopes / nodes)
     lost = slope * math.sqrt(square / nodes) / _SCALE ** (2 * _DOUBLE_DIFFERENCES)
     return lost / (size + _FLAT), size
+
+
+@kernel
+def formation(n: np.ndarray, nodes: int) -> float:
+    """How far the cell has formed, up to 1, and far less before: then errors grow with its waves.
+
+    An instability that takes the bound fraction from a spread of 1e-4 to one of 0.1 multiplies the
+    errors made on the way as much, so the first steps must be the most accurate ones.
+    """
+    mean = total(n, nodes) / nodes
+    square = 0.0
+    for i in range(HALO, HALO + nodes):
+        square += (n[i] - mean) ** 2
+    spread = min(math.sqrt(square / nodes) / _FORMED, 1.0)
+    return 1.0 / (1.0 + _AMPLIFIED * (1.0 - spread))
 
 
 @kernel

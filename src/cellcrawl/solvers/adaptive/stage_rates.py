@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.solvers.adaptive_rates import rates
+from cellcrawl.solvers.adaptive.rates import rates
 
 
 @kernel

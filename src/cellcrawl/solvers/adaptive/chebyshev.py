@@ -12,10 +12,10 @@ from typing import Final
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.solvers.scheme import Scheme
-from cellcrawl.solvers.stabilised import BEFORE, END, END_RATES, NOW, START, START_RATES
-from cellcrawl.solvers.stage_rates import stage_rates
-from cellcrawl.solvers.step_error import relative_size
+from cellcrawl.solvers.adaptive.scheme import Scheme
+from cellcrawl.solvers.adaptive.stabilised import BEFORE, END, END_RATES, NOW, START, START_RATES
+from cellcrawl.solvers.adaptive.stage_rates import stage_rates
+from cellcrawl.solvers.adaptive.step_error import relative_size
 
 ORDER: Final = 2
 _DAMPING: Final = 2.0 / 13.0

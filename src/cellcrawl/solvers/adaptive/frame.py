@@ -18,10 +18,9 @@ from cellcrawl.parameters import EDGE_ROWS
 from cellcrawl.physics.exponential import exponential
 from cellcrawl.physics.force_balance import SOLVED, balance, solve_off_rate
 from cellcrawl.physics.laws import driving_force, edge_velocity, friction
-from cellcrawl.solvers import adaptive_state as layout
-from cellcrawl.solvers.adaptive_rates import LENGTH, ORIGIN_X, ORIGIN_Y, SCALARS, TENSION
-from cellcrawl.solvers.base import Frame
-from cellcrawl.solvers.staggered import (
+from cellcrawl.solvers.adaptive import state as layout
+from cellcrawl.solvers.adaptive.rates import LENGTH, ORIGIN_X, ORIGIN_Y, SCALARS, TENSION
+from cellcrawl.solvers.adaptive.staggered import (
     HALO,
     cell_mean,
     difference_ahead,
@@ -30,6 +29,7 @@ from cellcrawl.solvers.staggered import (
     running_sum,
     total,
 )
+from cellcrawl.solvers.base import Frame
 
 _HALO = np.uint64(HALO)
 _ROWS: Final = ("x", "y", "theta", "curvature", "bound_fraction", "off_rate")

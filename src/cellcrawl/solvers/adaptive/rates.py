@@ -23,7 +23,7 @@ from cellcrawl.physics.laws import (
     friction_bend,
     friction_slope,
 )
-from cellcrawl.solvers.staggered import (
+from cellcrawl.solvers.adaptive.staggered import (
     DIFFERENCE_PEAK,
     HALO,
     SECOND_DIFFERENCE_PEAK,

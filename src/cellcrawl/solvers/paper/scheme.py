@@ -11,13 +11,14 @@ from cellcrawl.errors import InputError
 from cellcrawl.linear import fastest_decay
 from cellcrawl.parameters import Conditions
 from cellcrawl.physics.force_balance import SOLVED, solve_off_rate
-from cellcrawl.solvers import paper_step, tangent_angle
 from cellcrawl.solvers.base import (
     Breakdown,
     Frame,
     Solver,
     pointwise_velocity_and_friction,
 )
+from cellcrawl.solvers.paper import step as paper_step
+from cellcrawl.solvers.paper import tangent_angle
 from cellcrawl.starts.base import CellState
 from cellcrawl.validation import real_number, whole_number
 

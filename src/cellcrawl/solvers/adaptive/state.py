@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from cellcrawl.curve import fourier
-from cellcrawl.solvers.adaptive_rates import AREA, LENGTH, ORIGIN_X, SCALARS, TENSION
-from cellcrawl.solvers.staggered import HALO
+from cellcrawl.solvers.adaptive.rates import AREA, LENGTH, ORIGIN_X, SCALARS, TENSION
+from cellcrawl.solvers.adaptive.staggered import HALO
 from cellcrawl.starts.base import CellState
 
 
@@ -32,6 +32,12 @@ def bound(state: np.ndarray) -> np.ndarray:
     nodes = nodes_of(state)
     first = nodes + 3 * HALO
     return state[..., first : first + nodes]
+
+
+def bound_with_halo(state: np.ndarray) -> np.ndarray:
+    """Bound fraction at the midpoints with its halo, of one state; a view."""
+    span = nodes_of(state) + 2 * HALO
+    return state[span : 2 * span]
 
 
 def scalars(state: np.ndarray) -> np.ndarray:
