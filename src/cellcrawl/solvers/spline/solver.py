@@ -46,7 +46,7 @@ class SplineSolver(Solver):
         dt: float = _USUAL_STEP,
     ) -> None:
         self._conditions = conditions
-        self._nodes = nodes
+        self._nodes = self.checked_nodes(nodes)
         self._dt = real_number("dt", dt, 1e-7, 0.1)
         self._anchor = time  # steps are counted from here: the start, or the last break
         self._steps_from_anchor = 0
@@ -67,7 +67,7 @@ class SplineSolver(Solver):
         return _USUAL_NODES if nodes is None else whole_number("nodes", nodes, 32, 10_000)
 
     @classmethod
-    def start_nodes(cls, nodes: int) -> int:
+    def start_nodes(cls, nodes: int, **options: Any) -> int:
         return nodes
 
     def advance(self, target: float) -> Breakdown | None:
@@ -246,8 +246,9 @@ class SplineSolver(Solver):
             return Breakdown(
                 "step_too_small",
                 time,
-                f"the curvature is smoothed so fast {place} that a step of {self._dt:g} would take "
-                f"more than {drive.LARGEST_PARTS} parts: use fewer nodes than {self._nodes}",
+                f"the curvature is smoothed so fast at t = {time:.6g} that a step of {self._dt:g} "
+                f"would take more than {drive.LARGEST_PARTS} parts: use fewer nodes than "
+                f"{self._nodes}",
             )
         if code == balance.UNSETTLED:
             return Breakdown(
