@@ -8,7 +8,7 @@ from functools import partial
 from typing import NamedTuple
 
 from cellcrawl.bench.cases import LAWS, POINTS, Case, error, reference
-from cellcrawl.bench.work_precision import _solve, timed
+from cellcrawl.bench.work_precision import prepare, timed, warm_up
 
 _CRAWLERS = ((26, 600), (36, 560), (24, 540))
 
@@ -24,6 +24,7 @@ class Target(NamedTuple):
 
 def measure(quick: bool = False) -> Iterator[Target]:
     """Measure every target."""
+    warm_up()
     yield from _accuracy(quick)
     yield from _speed(quick)
 
@@ -35,7 +36,7 @@ def _accuracy(quick: bool) -> Iterator[Target]:
             for law in LAWS:
                 for t_end in (2.0, 5.0):
                     case = Case(*point, law, t_end=t_end)
-                    found, _ = _solve("adaptive", case, rtol=rtol)
+                    found, _ = prepare("adaptive", case, rtol=rtol)()
                     miss = error(found, reference(case))
                     if miss > worst:
                         worst, where = miss, f"{case.label}, t = {t_end:g}"
@@ -56,7 +57,7 @@ def _speed(quick: bool) -> Iterator[Target]:
     yield _against_refined(Case(26, 600, t_end=5.0))
     for law, limit in (("printed", 0.12), ("consistent", 0.2)):
         case = Case(26, 600, law, t_end=100.0, random=True)
-        _, seconds, _ = timed(partial(_solve, "adaptive", case))
+        _, seconds, _ = timed(partial(prepare, "adaptive", case))
         yield Target(
             f"{case.label}, t = 0...100, default tolerance, one core",
             f"<= {limit:g} s",
@@ -67,11 +68,11 @@ def _speed(quick: bool) -> Iterator[Target]:
 
 def _against_published(case: Case, asked: float) -> Target:
     """Time to t_end against the paper's scheme as published, and both errors at t = 5."""
-    _, fast, _ = timed(partial(_solve, "adaptive", case))
-    _, slow, _ = timed(partial(_solve, "paper", case))
+    _, fast, _ = timed(partial(prepare, "adaptive", case))
+    _, slow, _ = timed(partial(prepare, "paper", case))
     early = Case(case.r_on, case.zeta_1, case.elasticity, t_end=5.0, random=case.random)
     truth = reference(early)
-    errors = [error(_solve(name, early)[0], truth) for name in ("adaptive", "paper")]
+    errors = [error(prepare(name, early)()[0], truth) for name in ("adaptive", "paper")]
     ratio = slow / fast
     return Target(
         f"speed against the paper's scheme as published, {case.label}, t = 0...{case.t_end:g}",
@@ -85,10 +86,10 @@ def _against_published(case: Case, asked: float) -> Target:
 def _against_refined(case: Case) -> Target:
     """Time against the paper's scheme refined until its error is 1e-4 too."""
     truth = reference(case)
-    _, fast, _ = timed(partial(_solve, "adaptive", case))
+    _, fast, _ = timed(partial(prepare, "adaptive", case))
     nodes, dt, miss, slow = 2000, 1e-3, math.inf, math.nan
     while miss > 1e-4 and dt > 1e-6:
-        found, slow, _ = timed(partial(_solve, "paper", case, nodes=nodes, dt=dt))
+        found, slow, _ = timed(partial(prepare, "paper", case, nodes=nodes, dt=dt))
         miss = error(found, truth)
         dt /= max(2.0, min(miss / 1e-4, 8.0))
     return Target(

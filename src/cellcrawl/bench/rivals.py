@@ -88,6 +88,9 @@ class FixedGrid:
         return np.array([made.length, made.centroid_x, made.centroid_y])
 
 
+Rival = Callable[[FixedGrid, float, float], np.ndarray]
+
+
 def cvode(system: FixedGrid, t_end: float, rtol: float) -> np.ndarray:
     """Solve with CVODE, BDF and unpreconditioned GMRES."""
     from sksundae.cvode import CVODE
@@ -108,9 +111,9 @@ def bdf(system: FixedGrid, t_end: float, rtol: float) -> np.ndarray:
     return _scipy("BDF", system, t_end, rtol)
 
 
-def available() -> dict[str, Callable[[FixedGrid, float, float], np.ndarray]]:
+def available() -> dict[str, Rival]:
     """Return the rivals that are installed, by name."""
-    found: dict[str, Callable[[FixedGrid, float, float], np.ndarray]] = {}
+    found: dict[str, Rival] = {}
     if importlib.util.find_spec("sksundae") is not None:
         found["CVODE BDF+GMRES"] = cvode
     if importlib.util.find_spec("scipy") is not None:

@@ -17,6 +17,8 @@ CANCELLED: Final = 130
 _COMMANDS: Final[dict[str, tuple[str, str]]] = {
     "simulate": ("simulate", "Simulate one cell; leave its data, a picture and a movie."),
     "resume": ("resume", "Go on with a saved run."),
+    "dispersion": ("theory", "Growth rates of every wavenumber, as a table and a picture."),
+    "stability": ("theory", "Which wavenumbers grow where, over two parameters."),
     "plot": ("draw", "Draw a saved run."),
     "movie": ("draw", "Film a saved run."),
     "info": ("info", "Say what a file holds."),

@@ -1,8 +1,4 @@
-"""Linear stability of the resting circle (MODEL: a circle of radius 1 at off-rate r_p).
-
-For wavenumber k the growth rates are the two roots of
-``a lam**2 + (a q_k + S_k c - b) lam + S_k c q_k = 0``.
-"""
+"""Linear stability of the resting circle: its state, and the two growth rates of a wavenumber."""
 
 from __future__ import annotations
 
@@ -12,11 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from cellcrawl.errors import InputError
+from cellcrawl.linear.characteristic import (
+    characteristic,
+    checked_shapes,
+    checked_values,
+    checked_wavenumbers,
+)
 from cellcrawl.parameters import Parameters
-from cellcrawl.validation import real_array
-
-_HIGHEST = 1e6
 
 
 @dataclass(frozen=True)
@@ -46,34 +44,48 @@ def base_state(parameters: Parameters) -> BaseState:
     )
 
 
-def growth_rates(parameters: Parameters, k: Any) -> np.ndarray:
-    """Growth rates of wavenumber ``k``, complex, shape ``k.shape + (2,)``.
+def growth_rates(parameters: Parameters, k: Any, **values: Any) -> np.ndarray:
+    """Growth rates of wavenumber ``k``, both roots of the characteristic equation.
 
-    The larger root comes first; of a complex pair the one with the positive imaginary part.
-    ``k = 0`` is the breathing mode, with the tension law of ``parameters``.
+    Parameters
+    ----------
+    parameters : Parameters
+        The cell; its ``elasticity`` is the tension law of the breathing mode, ``k = 0``.
+    k : int or array
+        Wavenumbers. Any real number is taken, though only whole ones fit a circle.
+    **values : float or array
+        Parameters by name that replace those of the cell. They broadcast with each other and with
+        ``k``: ``growth_rates(p, 1, r_on=r_on[:, None], zeta_1=zeta_1)`` is a map.
+
+    Returns
+    -------
+    array, complex, shape (..., 2)
+        The larger root comes first; of a complex pair the one with the positive imaginary part.
+        ``k = 1`` always has the root 0, a shift of the circle.
 
     Raises
     ------
     InputError
-        For wavenumbers that are not numbers, or above a million.
+        For wavenumbers that are not numbers or above a million, unknown names, values out of range,
+        or shapes that do not broadcast.
     """
-    p, base = parameters, base_state(parameters)
-    k = real_array("k", k, None)
-    if np.abs(k).max(initial=0.0) > _HIGHEST:
-        raise InputError(f"k = {np.abs(k).max():g} is out of range: it must be up to {_HIGHEST:g}")
-    q = p.r_on + p.r_p + p.D * k**2
-    stiffness = p.epsilon * p.h * base.tension * (k**2 - 1.0)
-    breathing = 2.0 * math.pi * p.epsilon * (1.0 + p.h) * p.tension_rate
-    stiffness = stiffness + np.where(k == 0, breathing, 0.0)
-    half = 0.5 * (base.a * q + stiffness * base.c - base.b) / base.a
-    product = stiffness * base.c * q / base.a
-    discriminant = half**2 - product
-    root = np.sqrt(np.abs(discriminant))
+    k = checked_wavenumbers(k)
+    given = checked_values("growth_rates", values)
+    checked_shapes(k, given)
+    quadratic = characteristic(parameters, k, given)
+    half = 0.5 * quadratic.damping / quadratic.a
+    product = quadratic.restoring / quadratic.a
+    square = 0.25 * quadratic.discriminant / quadratic.a**2
+    root = np.sqrt(np.abs(square))
     far = -half - np.copysign(root, half)  # no cancellation; the other root from the product
     near = np.divide(product, far, out=np.zeros_like(far), where=far != 0.0)
-    real = np.stack([np.maximum(far, near), np.minimum(far, near)], axis=-1)
-    pair = np.stack([-half + 1j * root, -half - 1j * root], axis=-1)
-    return np.where(discriminant[..., None] < 0.0, pair, real)
+    oscillates = square < 0.0
+    rates = np.empty((*half.shape, 2), complex)
+    for index, (larger, sign) in enumerate(((np.maximum, 1.0), (np.minimum, -1.0))):
+        rates[..., index].real = np.where(oscillates, -half, larger(far, near))
+        rates[..., index].imag = np.where(oscillates, sign * root, 0.0)
+    rates += 0.0  # no minus zeros
+    return rates
 
 
 def fastest_decay(parameters: Parameters) -> float:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from cellcrawl.errors import InputError
-from cellcrawl.linear import base_state, growth_rates
+from cellcrawl.linear import growth_rates
+from cellcrawl.linear.eigenmodes import Amplitudes, linear_mode, second_order
 from cellcrawl.parameters import Parameters
 from cellcrawl.starts.base import CellState
 from cellcrawl.starts.fourier import need_nodes, perturbed_circle
@@ -20,17 +22,23 @@ CARRIERS = ("radius", "bound_fraction")
 
 @dataclass(frozen=True)
 class Eigenmode:
-    """The resting circle with one eigenmode of its linear theory; immutable.
+    """The resting circle with one eigenmode, exact to second order in the amplitude; immutable.
 
     With growth rate ``lam`` the mode changes radius, bound fraction and off-rate as
-    ``lam R = -epsilon c r`` and ``(lam + q) n = -n_bar r``; a complex one travels round the edge.
+    ``lam R = -epsilon c r`` and ``(lam + q) n = -n_bar r``, in the polar angle; a complex one
+    travels round the edge. To it are added the mean and the second harmonic, of second order in the
+    amplitude, that grow in step with it at twice its rate. So the state lies on the mode's
+    invariant manifold up to terms of third order: the mode alone would differ from the model's
+    own growth at second order, and leave free modes behind. The tension is that of the resting
+    circle plus ``G`` times the change of area, exactly: a mode k >= 1 changes both at second order
+    only, and by little where ``G`` is large.
 
     Parameters
     ----------
     k : int
         Wavenumber; 0 is the breathing mode, which changes the tension too.
     amplitude : float
-        Amplitude of the field named by ``carrier``.
+        Amplitude of the field named by ``carrier``; for k = 0, its part of first order.
     branch : {"+", "-"}
         Which root: the larger real part (of a complex pair, the positive imaginary part), or the
         other.
@@ -60,33 +68,62 @@ class Eigenmode:
     def state(self, parameters: Parameters, nodes: int) -> CellState:
         """Return the first state on ``nodes`` nodes, node 0 at the crest of the carrier.
 
+        The second harmonic is left out where the nodes cannot show it.
+
         Raises
         ------
         InputError
-            If the mode has nothing of the carrier, or the nodes are too few for its waves.
+            If the mode has nothing of the carrier, the nodes are too few for its waves, or the
+            amplitude is too large for a cell.
         """
-        p, base = parameters, base_state(parameters)
+        p = parameters
         need_nodes(nodes, self.k)
-        rate = self.growth_rate(p)
-        q = p.r_on + p.r_p + p.D * self.k**2
-        shape = {"radius": p.epsilon * base.c * (rate + q), "bound_fraction": p.n_bar * rate}
+        mode = self._mode(p)
+        harmonics = second_order(p, self.k, self.growth_rate(p), mode)
+        mean = harmonics.pop(0, Amplitudes(0.0, 0.0, 0.0))
+        waves = {m: wave for m, wave in harmonics.items() if nodes > 2 * m}
+        if self.k > 0:
+            waves[self.k] = mode
+            mode = Amplitudes(0.0, 0.0, 0.0)
+        # the mean radius and the tension from the area, so that the tension law holds exactly
+        ripple = 0.5 * sum(abs(wave.radius) ** 2 for wave in waves.values())
+        first = abs(waves[self.k].radius) ** 2 / 2.0 if self.k > 0 else mode.radius.real**2
+        grown = math.pi * (2.0 * mode.radius.real + 2.0 * mean.radius.real + first)
+        square = 1.0 + grown / math.pi - ripple
+        if square <= 0.0:
+            raise InputError(
+                f"amplitude = {self.amplitude:g} is too large for mode k = {self.k}, branch "
+                f"{self.branch!r}: the cell would have no area"
+            )
+        bound = mode.bound_fraction.real + mean.bound_fraction.real
+        return perturbed_circle(
+            p,
+            nodes,
+            {0: (math.sqrt(square) - 1.0, 0.0), **_pairs("radius", waves)},
+            {0: (bound, 0.0), **_pairs("bound_fraction", waves)},
+            p.tension_rate * grown,
+        )
+
+    def _mode(self, parameters: Parameters) -> Amplitudes:
+        """Return the linear mode in the size asked for."""
+        rate = self.growth_rate(parameters)
+        mode = linear_mode(parameters, self.k, rate)
+        q = parameters.r_on + parameters.r_p + parameters.D * self.k**2
         if abs(rate if self.carrier == "bound_fraction" else rate + q) < 1e-12 * q:
             other = next(name for name in CARRIERS if name != self.carrier)
             raise InputError(
                 f"mode k = {self.k}, branch {self.branch!r}, has no {self.carrier} at these "
                 f"parameters: give carrier={other!r}"
             )
-        scale = self.amplitude / shape[self.carrier]
-        radius, bound = shape["radius"] * scale, shape["bound_fraction"] * scale
-        tension = 2.0 * math.pi * p.tension_rate * radius.real if self.k == 0 else 0.0
-        return perturbed_circle(
-            p,
-            nodes,
-            {self.k: (radius.real, -radius.imag)},
-            {self.k: (bound.real, -bound.imag)},
-            tension,
-        )
+        scale = self.amplitude / getattr(mode, self.carrier)
+        return Amplitudes(*(complex(part * scale) for part in mode))
 
     def describe(self) -> dict[str, Any]:
         """Return this start as plain values for JSON."""
         return {"kind": "Eigenmode", **dataclasses.asdict(self)}
+
+
+def _pairs(field: str, waves: Mapping[int, Amplitudes]) -> dict[int, tuple[float, float]]:
+    """Return the cosine and sine amplitudes of a field."""
+    amplitudes = {m: complex(getattr(wave, field)) for m, wave in waves.items()}
+    return {m: (amplitude.real, -amplitude.imag) for m, amplitude in amplitudes.items()}
