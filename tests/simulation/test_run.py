@@ -23,7 +23,7 @@ def short(parameters: cc.Parameters | None = None, t_end: float = 0.3, **options
     return cc.simulate(parameters, t_end, **{"solver": "paper", "nodes": 100, **options})
 
 
-SOLVERS = pytest.mark.parametrize("solver", ["paper", "adaptive"])
+SOLVERS = pytest.mark.parametrize("solver", ["paper", "adaptive", "spline"])
 
 
 def test_dataset_keeps_the_contract():
@@ -95,7 +95,7 @@ def test_jump_of_the_schedule_changes_nothing_before_it():
 @SOLVERS
 def test_jump_of_the_schedule_is_hit_between_steps(solver):
     jump = cc.Schedule({"r_on": [(0.1005, 25.0), (0.1005, 60.0)]})
-    tight = {"solver": solver} if solver == "paper" else {"solver": solver, "rtol": 1e-8}
+    tight = {"solver": solver, **({"rtol": 1e-8} if solver == "adaptive" else {})}
     start = check_start(cc.Parameters())
     plain, changed = short(start=start, **tight), short(start=start, schedule=jump, **tight)
     assert not np.allclose(plain["bound_fraction"][-1], changed["bound_fraction"][-1])
@@ -192,7 +192,7 @@ numbers = {
 
 @hypothesis.settings(max_examples=100)
 @hypothesis.given(
-    solver=st.sampled_from(["paper", "adaptive"]),
+    solver=st.sampled_from(["paper", "adaptive", "spline"]),
     values=st.fixed_dictionaries({}, optional=numbers),
     elasticity=st.sampled_from(["printed", "consistent"]),
     seed=st.integers(0, 1000),

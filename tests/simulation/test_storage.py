@@ -28,7 +28,7 @@ cc.simulate(cc.Parameters(r_on=26), float(sys.argv[2]), solver="paper", nodes=20
 """
 
 
-SOLVERS = pytest.mark.parametrize("solver", ["paper", "adaptive"])
+SOLVERS = pytest.mark.parametrize("solver", ["paper", "adaptive", "spline"])
 
 
 def short(t_end: float, **options) -> xr.Dataset:

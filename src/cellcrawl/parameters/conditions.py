@@ -38,9 +38,10 @@ class Conditions:
         column = np.array([[getattr(now, name)] for name in EDGE_ROWS])
         return np.repeat(column, nodes, axis=1)
 
-    def tension_rate(self, time: float) -> float:
-        """Return ``G`` of the tension law from ``time`` on."""
-        return self.at(time).tension_rate
+    def tension_rate(self, time: float, *, before: bool = False) -> float:
+        """Return ``G`` of the tension law from ``time`` on, or up to it with ``before``."""
+        now = (self.schedule.before if before else self.schedule.at)(self.parameters, time)
+        return now.tension_rate
 
     def next_break(self, time: float) -> float:
         """Return the next time at which a parameter jumps or a ramp begins or ends."""

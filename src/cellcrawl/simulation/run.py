@@ -56,9 +56,11 @@ def simulate(
         the run ends early, the last valid state is one more record.
     solver : str
         Numerical scheme. ``"adaptive"`` meets a relative tolerance ``rtol`` (default 1e-4) and
-        chooses nodes and steps itself. ``"paper"`` is the paper's own (options ``nodes``, ``dt``).
+        chooses nodes and steps itself. ``"paper"`` is the paper's own, ``"spline"``
+        an independent check of both (each with options ``nodes``, ``dt``).
     nodes : int, optional
-        Nodes in the output; 256 unless given. ``"paper"`` computes on them too, and takes 2000.
+        Nodes in the output; 256 unless given. ``"paper"`` and ``"spline"`` compute on them too,
+        and take 2000 and 512.
     schedule : Schedule, optional
         Parameters that change during the run.
     output : str or Path, optional

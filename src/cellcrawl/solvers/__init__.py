@@ -5,7 +5,10 @@ from __future__ import annotations
 from cellcrawl.solvers.adaptive import AdaptiveSolver
 from cellcrawl.solvers.base import Breakdown, Frame, Solver
 from cellcrawl.solvers.paper import PaperSolver
+from cellcrawl.solvers.spline import SplineSolver
 
-SOLVERS: dict[str, type[Solver]] = {solver.name: solver for solver in (AdaptiveSolver, PaperSolver)}
+SOLVERS: dict[str, type[Solver]] = {
+    solver.name: solver for solver in (AdaptiveSolver, PaperSolver, SplineSolver)
+}
 
 __all__ = ["SOLVERS", "Breakdown", "Frame", "Solver"]

@@ -15,7 +15,7 @@ from cellcrawl._compile import kernel
 from cellcrawl.physics.exponential import exponential
 from cellcrawl.physics.force_balance import SOLVED, solve_off_rate
 from cellcrawl.physics.laws import edge_velocity
-from cellcrawl.solvers.paper.cyclic import solve_cyclic_tridiagonal
+from cellcrawl.solvers.cyclic import solve_cyclic_tridiagonal
 from cellcrawl.solvers.paper.tangent_angle import (
     central_difference,
     curvature,
