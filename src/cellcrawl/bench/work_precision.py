@@ -78,7 +78,7 @@ def _rivals(case: Case, truth: np.ndarray, quick: bool) -> Iterator[Row]:
             nodes = prepare("adaptive", case, rtol=max(10.0 * rtol, 1e-8))()[1]
             found, seconds, nodes = timed(partial(_prepare_rival, solve, case, nodes, rtol))
             yield _row(case, name, f"rtol {rtol:g}", found, truth, seconds, nodes)
-            if seconds > (3.0 if quick else 20.0):
+            if seconds > (3.0 if quick else 4.0):
                 break
 
 
