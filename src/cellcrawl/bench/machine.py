@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import json
+import math
 import os
 import platform
 from importlib.metadata import PackageNotFoundError, version
@@ -33,7 +34,17 @@ def describe(machine: dict[str, Any]) -> str:
 def write(path: Path, results: dict[str, Any]) -> None:
     """Write results with the machine's record as JSON."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps({"machine": record(), **results}, indent=1) + "\n", "utf-8")
+    content = _without_nan({"machine": record(), **results})
+    path.write_text(json.dumps(content, indent=1, allow_nan=False) + "\n", "utf-8")
+
+
+def _without_nan(value: Any) -> Any:
+    """Return ``value`` with null for what JSON has no word for."""
+    if isinstance(value, dict):
+        return {str(name): _without_nan(item) for name, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_without_nan(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _version(name: str) -> str | None:

@@ -15,6 +15,7 @@ from cellcrawl.parameters import Parameters
 
 # The cell that `cellcrawl simulate` alone shows: the paper's zigzag.
 SHOWN = Parameters(r_on=26.0, zeta_1=600.0)
+_FITS_IN_MEMORY = 500_000_000  # bytes
 
 
 @click.command(context_settings={"show_default": True})
@@ -132,6 +133,8 @@ def simulate(
             folder.rmdir()
         raise
     with dataset:
+        if dataset.nbytes < _FITS_IN_MEMORY:
+            dataset.load()  # drawing and filming read it piece by piece
         report_run(dataset)
         say(f"data     {data}")
         if picture:
