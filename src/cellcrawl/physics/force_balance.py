@@ -10,12 +10,20 @@ import math
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl._compile import inlined_kernel, kernel
 from cellcrawl.physics.exponential import exponential
 from cellcrawl.physics.laws import driving_force, friction, friction_bend, friction_slope
 
 SOLVED = -1  # what `solve_off_rate` returns when every node has its root
 ROUND_OFF = 3e-14  # residual over (1 + F) below which the root is as good as rounding allows
+
+
+@inlined_kernel
+def halley_step(y: float, r: float, n: float, zeta_1: float, force: float) -> float:
+    """Step in ``y`` towards ``friction(y, n) = force``; the error is cubed."""
+    g = friction(y, r, n, zeta_1) - force
+    slope = friction_slope(y, r, n, zeta_1)
+    return -2.0 * g * slope / (2.0 * slope * slope - g * friction_bend(y, r))
 
 
 @kernel
@@ -56,10 +64,7 @@ def solve_off_rate(
         force = driving_force(sigma, kappa[i], sigma_c[i], h[i])
         z = y[i]
         for _ in range(2):
-            r = exponential(z)
-            g = friction(z, r, n[i], zeta_1[i]) - force
-            slope = friction_slope(z, r, n[i], zeta_1[i])
-            z = z - 2.0 * g * slope / (2.0 * slope * slope - g * friction_bend(z, r))
+            z = z + halley_step(z, exponential(z), n[i], zeta_1[i], force)
         residual = friction(z, exponential(z), n[i], zeta_1[i]) - force
         good = (abs(residual) <= ROUND_OFF * (1.0 + abs(force))) & (z >= 0.0)
         y[i] = z

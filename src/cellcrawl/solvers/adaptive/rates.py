@@ -14,13 +14,11 @@ import numpy as np
 
 from cellcrawl._compile import inlined_kernel, kernel
 from cellcrawl.physics.exponential import exponential
-from cellcrawl.physics.force_balance import SOLVED, solve_off_rate
+from cellcrawl.physics.force_balance import SOLVED, halley_step, solve_off_rate
 from cellcrawl.physics.laws import (
     binding_rate,
     driving_force,
     edge_velocity,
-    friction,
-    friction_bend,
     friction_slope,
 )
 from cellcrawl.solvers.adaptive.staggered import (
@@ -48,14 +46,6 @@ RATE: Final = 4  # row of `work` that keeps r beside the last y, from stage to s
 _HALO = np.uint64(HALO)
 _NEAR = 0.12  # a first step in log r this short is followed by a second that reaches rounding
 _SETTLED = 4e-6  # a second step this short leaves an error of its cube
-
-
-@inlined_kernel
-def halley_step(y: float, r: float, n: float, zeta_1: float, force: float) -> float:
-    """Step in ``y`` towards ``friction(y, n) = force``; the error is cubed."""
-    g = friction(y, r, n, zeta_1) - force
-    slope = friction_slope(y, r, n, zeta_1)
-    return -2.0 * g * slope / (2.0 * slope * slope - g * friction_bend(y, r))
 
 
 @inlined_kernel
