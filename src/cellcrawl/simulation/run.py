@@ -103,7 +103,7 @@ def simulate(
     store = RunStore(output) if output is not None else None
     if store is not None and store.exists() and not overwrite:
         raise InputError(
-            f"{store.path} exists: give another output, pass overwrite=True, or resume it"
+            f"{store.path} exists: give another output, resume it, or ask to overwrite it"
         )
     scheme = solver_named(solver)
     count = scheme.checked_nodes(nodes)

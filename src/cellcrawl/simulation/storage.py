@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import itertools
 import os
+import re
 import shutil
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -281,7 +282,10 @@ def _readable(path: Path) -> Iterator[None]:
 
 
 def _reason(error: OSError) -> str:
-    return str(error.strerror or error).splitlines()[0]
+    """The system's word for what went wrong; HDF5 buries it in a long message."""
+    text = str(error.strerror or error).splitlines()[0]
+    buried = re.search(r"error message = '([^']+)'", str(error))
+    return buried.group(1) if buried else text
 
 
 def _block_number(path: Path) -> int:
