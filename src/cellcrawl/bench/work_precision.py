@@ -167,12 +167,14 @@ def _row(
 def plot(rows: list[Row]) -> Figure:
     """Draw error against time, one panel a case."""
     keys = list(dict.fromkeys((row.case, row.t_end) for row in rows))
-    columns = min(len(keys), 3)
+    columns = min(len(keys), 4)
     lines = math.ceil(len(keys) / columns)
-    figure = Figure(figsize=(3.2 * columns, 2.6 * lines), layout="constrained")
-    axes = figure.subplots(lines, columns, squeeze=False, sharex=True, sharey=True).flat
+    figure = Figure(figsize=(2.7 * columns, 2.1 * lines), layout="constrained")
+    grid = figure.subplots(lines, columns, squeeze=False, sharex=True, sharey=True)
+    axes = iter(grid.flat)
     names = list(dict.fromkeys(row.solver for row in rows))
-    for ax, (case, t_end) in zip(axes, keys, strict=False):
+    for case, t_end in keys:
+        ax = next(axes)
         for number, name in enumerate(names):
             runs = [r for r in rows if (r.case, r.t_end, r.solver) == (case, t_end, name)]
             ax.loglog(
@@ -185,7 +187,10 @@ def plot(rows: list[Row]) -> Figure:
             )
         ax.set_title(f"{case}, t = {t_end:g}", fontsize=7)
         ax.tick_params(labelsize=7)
+    for ax in list(axes):
+        ax.remove()
     figure.supxlabel("error of length and centroid", fontsize=8)
     figure.supylabel("time (s)", fontsize=8)
-    figure.axes[0].legend(fontsize=6)
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=len(names), fontsize=8)
     return figure
