@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import cellcrawl as cc
+from cellcrawl.bench.cases import check_start as check_start
 from cellcrawl.curve import Curve
 
 hypothesis.settings.register_profile(
@@ -31,18 +32,6 @@ class Given:
 
     def describe(self) -> dict[str, Any]:
         return {"kind": "Given"}
-
-
-def check_start(parameters: cc.Parameters) -> cc.PerturbedCircle:
-    """The deterministic start of MODEL.md, section 6."""
-    n_bar = parameters.n_bar
-    return cc.PerturbedCircle(
-        radius={1: (0.01, 0.0), 2: (0.02, 0.0), 3: (0.0, 0.01)},
-        bound_fraction={
-            1: (0.05 * n_bar * math.cos(0.3), -0.05 * n_bar * math.sin(0.3)),
-            2: (0.03 * n_bar * math.cos(1.0), 0.03 * n_bar * math.sin(1.0)),
-        },
-    )
 
 
 def rotated(state: cc.CellState, angle: float) -> cc.CellState:

@@ -57,13 +57,13 @@ def locate_crossing(
 
 def crossing_at(solver: Solver, time: float) -> Crossing | None:
     """Return where the edge crosses itself at a time in the solver's last step."""
-    return first_crossing(solver.points(time))
+    return first_crossing(solver.frame(time).points)
 
 
 def _tear(crossing: Crossing | None, time: float, solver: Solver) -> str:
     message = f"the edge crosses itself at t = {time:.4f}"
     if crossing is not None:
-        nodes = len(solver.points(solver.time))
+        nodes = solver.frame(solver.time).x.size
         first, second = (place / nodes for place in crossing.places)
         x, y = crossing.point
         message += f", where s/L = {first:.3f} meets s/L = {second:.3f} at ({x:.3f}, {y:.3f})"

@@ -10,6 +10,7 @@ from typing import Any
 
 import xarray as xr
 
+from cellcrawl.curve import first_crossing
 from cellcrawl.errors import InputError, nearest_name
 from cellcrawl.parameters import CONSTANT, Conditions, Parameters, Schedule
 from cellcrawl.simulation.dataset import SCHEMA_VERSION, decode_attribute, package_version
@@ -222,9 +223,8 @@ class _Run:
 
     def _follow(self, t_end: float, interruption: Interruption) -> tuple[Breakdown, float | None]:
         """Return how the run ended and the time of a closing record, None if it is on the grid."""
-        self._checkpoint = self.solver.checkpoint()
         now = self._last_record() if self.records else -0.5 * _CHECK_EVERY
-        valid = self.solver.checkpoint()
+        valid = self._checkpoint = self.solver.checkpoint()
         while True:
             target, on_grid = self._next_target(now, t_end)
             ended = self.solver.advance(target)
@@ -234,14 +234,14 @@ class _Run:
                     self._checkpoint = self.solver.checkpoint()
                     return ended, self._off_grid(max(last, now))
                 target = last
-            if crossing_at(self.solver, target) is not None:
+            frame = self.solver.frame(target)
+            if first_crossing(frame.points) is not None:
                 found = locate_crossing(self.solver, valid, now, target)
                 self._checkpoint = self.solver.checkpoint()
                 return found.breakdown, self._off_grid(found.last_valid)
             valid, now = self.solver.checkpoint(), target
             self._checkpoint = valid
             if on_grid:
-                frame = self.solver.frame(target)
                 self.records += 1
                 self.progress.update(target, frame.tension)
                 if self.recorder.record(frame):

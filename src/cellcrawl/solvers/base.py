@@ -109,10 +109,6 @@ class Solver(ABC):
     def frame(self, time: float) -> Frame:
         """Return the cell at ``time``, which must lie within the last step."""
 
-    def points(self, time: float) -> np.ndarray:
-        """Return the edge at ``time``, shape (nodes, 2), for the self-crossing check."""
-        return self.frame(time).points
-
     @abstractmethod
     def checkpoint(self) -> dict[str, np.ndarray]:
         """Return arrays from which `restore` goes on to the same bits."""

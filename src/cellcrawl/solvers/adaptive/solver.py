@@ -68,7 +68,6 @@ class AdaptiveSolver(Solver):
         self._edges: tuple[float, np.ndarray] | None = None
         self._counters[drive.RESTARTING] = 1
         self._counters[drive.ORDER] = stabilised.ORDER
-        self._framed: Frame | None = None
         if start is not None:
             self._begin(start)
 
@@ -90,7 +89,6 @@ class AdaptiveSolver(Solver):
 
     def advance(self, target: float) -> Breakdown | None:
         while self.time < target:
-            self._framed = None
             now = self.time
             end = self._conditions.next_break(now)
             if self._counters[drive.RESTARTING] and not self._restart(end):
@@ -123,8 +121,6 @@ class AdaptiveSolver(Solver):
         return None
 
     def frame(self, time: float) -> Frame:
-        if self._framed is not None and self._framed.time == time:
-            return self._framed  # the crossing check and the output ask for the same instant
         first, last = self._control[drive.PREVIOUS_TIME], self.time
         if not first <= time <= last:
             raise ValueError(f"t = {time} is not within the last step, from {first} to {last}")
@@ -134,7 +130,6 @@ class AdaptiveSolver(Solver):
             state = layout.hermite((time - first) / (last - first), last - first, ends)
         made, closure = frame(time, state, self._log_rate, self._conditions.edge(time, self._nodes))
         self._tally[3] = max(self._tally[3], closure)
-        self._framed = made
         return made
 
     def checkpoint(self) -> dict[str, np.ndarray]:
@@ -150,7 +145,6 @@ class AdaptiveSolver(Solver):
         self._control = np.array(checkpoint["control"], dtype=float)
         self._counters = np.array(checkpoint["counters"], dtype=np.int64)
         self._tally = np.array(checkpoint["tally"], dtype=float)
-        self._framed = None
         self._hold(np.array(checkpoint["states"], dtype=float))
         self._log_rate = np.array(checkpoint["log_rate"], dtype=float)
         current = self._states[drive.CURRENT]

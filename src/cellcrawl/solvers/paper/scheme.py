@@ -17,12 +17,12 @@ from cellcrawl.solvers.base import (
     Solver,
     pointwise_velocity_and_friction,
 )
+from cellcrawl.solvers.fixed_steps import ON_GRID, steps_towards
 from cellcrawl.solvers.paper import step as paper_step
 from cellcrawl.solvers.paper import tangent_angle
 from cellcrawl.starts.base import CellState
 from cellcrawl.validation import real_number, whole_number
 
-_ON_GRID = 1e-9  # a time this close to a step, in steps, is that step
 _STABLE = 2.0  # explicit Euler decays while step * rate < 2
 
 
@@ -72,14 +72,16 @@ class PaperSolver(Solver):
         return nodes
 
     def advance(self, target: float) -> Breakdown | None:
-        while self.time < target - _ON_GRID * self._dt:
+        while self.time < target - ON_GRID * self._dt:
             now = self.time
             end = self._conditions.next_break(now)
-            if self._step_time(self._steps_from_anchor + 1) >= end - _ON_GRID * self._dt:
+            if self._step_time(self._steps_from_anchor + 1) >= end - ON_GRID * self._dt:
                 breakdown = self._take(1, end - now)
                 landed: float | None = end
             else:
-                steps = self._steps_towards(min(target, end))
+                steps = steps_towards(
+                    min(target, end), end, self._anchor, self._steps_from_anchor, self._dt
+                )
                 if self._conditions.varies(now, end):
                     steps = 1
                 breakdown = self._take(steps, self._dt)
@@ -93,7 +95,7 @@ class PaperSolver(Solver):
     def frame(self, time: float) -> Frame:
         fields, scalars = self._fields, self._scalars
         edge = self._conditions.edge(time, self._nodes)
-        if abs(time - self.time) > _ON_GRID * self._dt:
+        if abs(time - self.time) > ON_GRID * self._dt:
             fields, scalars = self._between(time, edge)
         theta, n, y = fields.copy()
         length = float(scalars[paper_step.LENGTH])
@@ -222,15 +224,6 @@ class PaperSolver(Solver):
 
     def _step_time(self, count: int) -> float:
         return self._anchor + count * self._dt
-
-    def _steps_towards(self, target: float) -> int:
-        """Steps from now to the first step at or after ``target``, but before the next break."""
-        needed = math.ceil((target - self._anchor) / self._dt - _ON_GRID) - self._steps_from_anchor
-        end = self._conditions.next_break(self.time)
-        if math.isfinite(end):
-            room = math.ceil((end - self._anchor) / self._dt - _ON_GRID) - 1
-            needed = min(needed, room - self._steps_from_anchor)
-        return max(needed, 1)
 
     def _between(self, time: float, edge: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """State inside the last step, linear in time, with the off-rate of that state."""

@@ -10,13 +10,13 @@ import numpy as np
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import Conditions
 from cellcrawl.solvers.base import Breakdown, Frame, Solver
+from cellcrawl.solvers.fixed_steps import ON_GRID, steps_towards
 from cellcrawl.solvers.spline import balance, drive, frames, outline
 from cellcrawl.solvers.spline.outline import LOG_R, N, X, Y
 from cellcrawl.solvers.spline.runge_kutta import STAGES
 from cellcrawl.starts.base import CellState
 from cellcrawl.validation import real_number, whole_number
 
-_ON_GRID = 1e-9  # a time this close to a step, in steps, is that step
 _USUAL_NODES = 512
 _USUAL_STEP = 2e-3
 _STEPS_PER_CALL = 1000  # between two looks at Ctrl-C
@@ -71,17 +71,20 @@ class SplineSolver(Solver):
         return nodes
 
     def advance(self, target: float) -> Breakdown | None:
-        while self.time < target - _ON_GRID * self._dt:
+        while self.time < target - ON_GRID * self._dt:
             now = self.time
             end = self._conditions.next_break(now)
-            if self._step_time(self._steps_from_anchor + 1) >= end - _ON_GRID * self._dt:
+            if self._step_time(self._steps_from_anchor + 1) >= end - ON_GRID * self._dt:
                 breakdown = self._take(1, end - now, end)
                 if breakdown is None:
                     breakdown = self._land(end)
             elif self._conditions.varies(now, end):
                 breakdown = self._take(1, self._dt, self._step_time(self._steps_from_anchor + 1))
             else:
-                steps = self._steps_towards(min(target, end))
+                steps = steps_towards(
+                    min(target, end), end, self._anchor, self._steps_from_anchor, self._dt
+                )
+                steps = min(steps, _STEPS_PER_CALL)
                 until = self._step_time(self._steps_from_anchor + steps)
                 breakdown = self._take(steps, self._dt, until)
             if breakdown is not None:
@@ -200,7 +203,7 @@ class SplineSolver(Solver):
     def _at(self, time: float) -> frames.State:
         """Return the state at a time in the last step."""
         last = frames.State(self.time, self._fields, *map(float, self._scalars))
-        if abs(time - self.time) <= _ON_GRID * self._dt:
+        if abs(time - self.time) <= ON_GRID * self._dt:
             return last._replace(time=time)
         if not self._before_time <= time <= self.time:
             raise ValueError(f"t = {time} is not within the last step, which ends at {self.time}")
@@ -265,12 +268,3 @@ class SplineSolver(Solver):
 
     def _step_time(self, count: int) -> float:
         return self._anchor + count * self._dt
-
-    def _steps_towards(self, target: float) -> int:
-        """Steps from now to the first step at or after ``target``, but before the next break."""
-        needed = math.ceil((target - self._anchor) / self._dt - _ON_GRID) - self._steps_from_anchor
-        end = self._conditions.next_break(self.time)
-        if math.isfinite(end):
-            room = math.ceil((end - self._anchor) / self._dt - _ON_GRID) - 1
-            needed = min(needed, room - self._steps_from_anchor)
-        return min(max(needed, 1), _STEPS_PER_CALL)
