@@ -1,0 +1,61 @@
+"""The rule on turns: the words of the paper made quantitative.
+
+Each condition is a threshold on a measure with a width: it holds fully at the threshold plus the
+width, not at all at the threshold minus the width, and half at the threshold. A mode fits as well
+as its worst condition.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from cellcrawl.modes.result import Measures
+
+
+class Condition(NamedTuple):
+    """A threshold on a measure."""
+
+    words: str
+    fit: float
+
+
+def gliding(found: Measures) -> list[Condition]:
+    """Return the conditions of "moves in a straight line with no turns"."""
+    return [
+        _below("the heading wanders", found.wander, _rad(30.0), _rad(12.0)),
+        _below("it turns in all", abs(found.turned), _rad(60.0), _rad(30.0)),
+    ]
+
+
+def rotational(found: Measures) -> list[Condition]:
+    """Return the conditions of "turns only towards one direction"."""
+    return [
+        _above("it turns in all", abs(found.turned), _rad(60.0), _rad(30.0)),
+        _below("it turns back", found.counter_turn, _rad(45.0), _rad(20.0)),
+        _above("it turns throughout", found.evenness, 0.3, 0.25),
+    ]
+
+
+def zigzag(found: Measures) -> list[Condition]:
+    """Return the conditions of "turns alternatively between left and right"."""
+    return [
+        _above("swings", found.swings, 3.0, 1.5),
+        _above("size of a swing", found.swing, _rad(24.0), _rad(8.0)),
+        _below("widest swing", found.widest_swing, math.pi, _rad(20.0)),
+        _below("one-sidedness", found.one_sidedness, 0.4, 0.15),
+        _below("swings differ in size", found.angle_spread, 0.4, 0.15),
+        _below("swings differ in time", found.interval_spread, 0.4, 0.15),
+    ]
+
+
+def _above(words: str, value: float, threshold: float, width: float) -> Condition:
+    fit = 0.5 + 0.5 * (value - threshold) / width
+    return Condition(words, min(1.0, max(0.0, fit)))
+
+
+def _below(words: str, value: float, threshold: float, width: float) -> Condition:
+    return Condition(words, _above(words, -value, -threshold, width).fit)
+
+
+_rad = math.radians
