@@ -50,6 +50,7 @@ def measure(track: SmoothTrack, first: int) -> Measures:
         interval_spread=_spread(np.diff(crossings)),
         wander=_wander(times, heading),
         turning_rate=rate,
+        circling_radius=path / abs(turned) if turned else math.inf,
         period=2.0 * _mean(np.diff(crossings)) if crossings.size > 1 else math.nan,
         speed=float(np.median(track.speed[first:])),
         straightness=net / path if path > 0.0 else 0.0,
@@ -59,11 +60,13 @@ def measure(track: SmoothTrack, first: int) -> Measures:
 
 
 def _complete(swings: Swings) -> Swings:
-    """Leave out the first and the last swing, which the ends of the track cut off."""
-    if swings.angle.size < 4:
+    """Leave out the first and the last swing if the ends of the track cut them off: if smaller."""
+    sizes = np.abs(swings.angle)
+    if sizes.size < 4:
         return swings
-    inner = slice(1, -1)
-    return Swings(swings.start[inner], swings.end[inner], swings.angle[inner])
+    inner = sizes[1:-1].mean()
+    kept = slice(int(sizes[0] < inner), sizes.size - int(sizes[-1] < inner))
+    return Swings(swings.start[kept], swings.end[kept], swings.angle[kept])
 
 
 def _crossing_times(times: np.ndarray, heading: np.ndarray, swings: Swings) -> np.ndarray:

@@ -39,6 +39,9 @@ class Measures:
         Range of the heading around its straight line in time.
     turning_rate : float
         Net change of heading over time, positive to the left.
+    circling_radius : float
+        Path length over the net change of heading: the radius of the circle that turns as much.
+        Infinite without turning.
     period : float
         Time of a full left-right cycle, or of a turn of 2 pi for a rotating cell; NaN else.
     speed : float
@@ -63,6 +66,7 @@ class Measures:
     interval_spread: float = math.nan
     wander: float = math.nan
     turning_rate: float = math.nan
+    circling_radius: float = math.nan
     period: float = math.nan
     speed: float = math.nan
     straightness: float = math.nan

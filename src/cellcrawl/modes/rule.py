@@ -28,9 +28,19 @@ def gliding(found: Measures) -> list[Condition]:
     ]
 
 
-def rotational(found: Measures) -> list[Condition]:
-    """Return the conditions of "turns only towards one direction"."""
+def rotational(found: Measures, cell_radius: float | None = None) -> list[Condition]:
+    """Return the conditions of "turns only towards one direction".
+
+    Where the size of the cell is known, its centroid must go round a circle wider than the cell: a
+    cell that spins within its own outline goes nowhere.
+    """
+    spins = []
+    if cell_radius is not None:
+        spins = [
+            _above("it circles wider than itself", found.circling_radius / cell_radius, 1.0, 0.25)
+        ]
     return [
+        *spins,
         _above("it turns in all", abs(found.turned), _rad(60.0), _rad(30.0)),
         _below("it turns back", found.counter_turn, _rad(45.0), _rad(20.0)),
         _above("it turns throughout", found.evenness, 0.3, 0.25),

@@ -86,7 +86,8 @@ def smooth(track: Track) -> SmoothTrack:
     speed = np.hypot(*velocity)
     return SmoothTrack(
         even,
-        *smoothed,
+        smoothed[0],
+        smoothed[1],
         speed,
         np.unwrap(np.arctan2(velocity[1], velocity[0])),
         noise,

@@ -74,14 +74,7 @@ def as_track(run: Any, x: Any = None, y: Any = None, *, at_least: int = 2) -> Tr
         if x is None or y is None:
             raise InputError("a track needs times, x and y: three arrays of the same size")
         times = real_array("t", run, (None,))
-        size = times.size
-        places = []
-        for name, values in (("x", x), ("y", y)):
-            place = real_array(name, values, (None,))
-            if place.size != size:
-                raise InputError(f"{name} has {place.size} values and t has {size}: give as many")
-            places.append(place)
-        track = Track(times, *places)
+        track = Track(times, _positions("x", x, times.size), _positions("y", y, times.size))
     if track.t.size < at_least:
         raise InputError(
             f"this track has {track.t.size} records in time: at least {at_least} needed"
@@ -92,10 +85,17 @@ def as_track(run: Any, x: Any = None, y: Any = None, *, at_least: int = 2) -> Tr
 
 def _track_of(run: xr.Dataset, at_least: int) -> Track:
     records_with(run, "centroid_x", "centroid_y", at_least=at_least)
-    arrays = [
+    t, x, y = (
         real_array(name, run[name].values, (None,)) for name in ("time", "centroid_x", "centroid_y")
-    ]
-    return Track(*arrays, length_units="R_0", time_units="1/k_off0")
+    )
+    return Track(t, x, y, length_units="R_0", time_units="1/k_off0")
+
+
+def _positions(name: str, values: Any, size: int) -> np.ndarray:
+    positions = real_array(name, values, (None,))
+    if positions.size != size:
+        raise InputError(f"{name} has {positions.size} values and t has {size}: give as many")
+    return positions
 
 
 def _must_rise(times: np.ndarray) -> None:

@@ -60,4 +60,5 @@ def _turning_points(heading: np.ndarray, smallest: float) -> np.ndarray:
             direction, high = 1, i
     if direction:
         points.append(high if direction > 0 else low)
-    return candidates[np.asarray(points, dtype=int)]
+    found: np.ndarray = candidates[np.asarray(points, dtype=int)]
+    return found
