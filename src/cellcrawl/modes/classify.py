@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from cellcrawl.modes import rule
-from cellcrawl.modes.measures import measure, onset
+from cellcrawl.modes.measures import measure, measure_rest, onset
 from cellcrawl.modes.result import Classification, Measures
 from cellcrawl.observables.inputs import records_with
 from cellcrawl.observables.smoothing import SmoothTrack, smooth
@@ -21,9 +22,6 @@ FEWEST_RECORDS = 12
 _LATER_STARTS = (0.0, 1 / 9, 2 / 9, 3 / 9)
 """Where the transient may end, as parts of what follows the onset."""
 _PREFER_EARLY = 0.3  # a start that leaves out the part p must fit better by this times p
-_BLOCKS = 8  # parts of a track whose means tell motion from noise
-_MOVES = 3.0  # a cell moves if these means scatter this many times as much as noise would
-_ON_THE_SPOT = 0.05  # of the cell's radius: it rests if it moves less than this
 
 
 def classify(dataset: xr.Dataset) -> Classification:
@@ -86,9 +84,10 @@ def classify_track(
 
 def _classify(track: Track, cell_radius: float | None) -> Classification:
     smoothed = smooth(track)
-    if _rests(track, smoothed, cell_radius):
-        found = Measures(start=float(track.t[0]), speed=0.0, noise=smoothed.noise)
-        return Classification("stationary", 1.0, {}, found, "it does not move beyond its noise")
+    still = measure_rest(track, smoothed.noise)
+    at_rest = max(rule.stationary(still, cell_radius), key=lambda condition: condition.fit)
+    if at_rest.fit >= 0.5:
+        return Classification("stationary", at_rest.fit, {}, still, at_rest.words)
     first = onset(smoothed)
     left = smoothed.t.size - first
     found_at = {
@@ -96,9 +95,16 @@ def _classify(track: Track, cell_radius: float | None) -> Classification:
         for later in (_LATER_STARTS if left > 2 * FEWEST_RECORDS else (0.0,))
     }
     named = {later: result for later, result in found_at.items() if result.mode != "other"}
-    if not named:
-        return found_at[0.0]
-    return named[max(named, key=lambda later: named[later].confidence - _PREFER_EARLY * later)]
+    best = found_at[0.0]
+    if named:
+        best = named[max(named, key=lambda later: named[later].confidence - _PREFER_EARLY * later)]
+    seen = replace(
+        best.measures,
+        extent=still.extent,
+        late_extent=still.late_extent,
+        disorder=still.disorder,
+    )
+    return replace(best, confidence=min(best.confidence, 1.0 - at_rest.fit), measures=seen)
 
 
 def _apply_rule(track: SmoothTrack, start: int, cell_radius: float | None) -> Classification:
@@ -110,28 +116,15 @@ def _apply_rule(track: SmoothTrack, start: int, cell_radius: float | None) -> Cl
     }
     fits = {mode: min(c.fit for c in held) for mode, held in conditions.items()}
     mode = max(fits, key=lambda name: fits[name])
-    worst = min(conditions[mode], key=lambda condition: condition.fit)
     if fits[mode] >= 0.5:
-        return Classification(mode, fits[mode], fits, found, worst.words)
-    return Classification("other", 1.0 - fits[mode], fits, found, worst.words)
-
-
-def _rests(track: Track, smoothed: SmoothTrack, cell_radius: float | None) -> bool:
-    """Whether the positions after the first quarter are those of a cell that does not move."""
-    after = np.searchsorted(track.t, track.t[0] + 0.25 * track.duration)
-    places = np.stack([track.x, track.y])
-    late = places[:, after:]
-    extent = float(np.ptp(late, axis=1).max())
-    if cell_radius is not None and extent < _ON_THE_SPOT * cell_radius:
-        return True
-    if extent <= 1e-9 * np.abs(places).max() or extent < 0.02 * np.ptp(places, axis=1).max():
-        return True
-    each = late.shape[1] // _BLOCKS
-    if each < 2 or smoothed.noise == 0.0:
-        return False
-    blocks = late[:, : each * _BLOCKS].reshape(2, _BLOCKS, each).mean(axis=2)
-    scatter = float(np.sqrt(blocks.var(axis=1, ddof=1).mean()))
-    return scatter < _MOVES * smoothed.noise / math.sqrt(each)
+        weakest = min(conditions[mode], key=lambda condition: condition.fit)
+        return Classification(mode, fits[mode], fits, found, weakest.words)
+    # The mode with most conditions held says best what is odd about the track.
+    nearest = max(
+        conditions, key=lambda name: sum(c.fit for c in conditions[name]) / len(conditions[name])
+    )
+    broken = min(conditions[nearest], key=lambda condition: condition.fit)
+    return Classification("other", 1.0 - fits[mode], fits, found, f"not {nearest}: {broken.words}")
 
 
 def _fragmented() -> Classification:

@@ -8,11 +8,14 @@ import numpy as np
 
 from cellcrawl.modes.result import Measures
 from cellcrawl.observables.smoothing import SmoothTrack
+from cellcrawl.observables.track import Track
 from cellcrawl.observables.turns import Swings, swings_of
 
 SMALLEST_SWING = math.radians(20.0)
 """Swings of the heading smaller than this are not turns."""
 _NOISE_RANGE = 6.0  # peak to peak of a heading that only has noise, over its standard deviation
+_FIRST_MOVES = 0.25  # of the time: a cell may come to rest, or move into place, meanwhile
+_ROUNDING = 1e-9
 _ONSET = 0.5  # the cell has begun to crawl at this fraction of its later median speed
 
 
@@ -20,6 +23,26 @@ def onset(track: SmoothTrack) -> int:
     """Return the first record at which the cell crawls at half its later median speed."""
     later = float(np.median(track.speed[track.speed.size // 2 :]))
     return int(np.argmax(track.speed >= _ONSET * later))
+
+
+def measure_rest(track: Track, noise: float) -> Measures:
+    """Measure whether a cell moves at all, after the first quarter of the time."""
+    after = int(np.searchsorted(track.t, track.t[0] + _FIRST_MOVES * track.duration))
+    places = np.stack([track.x, track.y])
+    late = places[:, after:]
+    whole, extent = (float(np.ptp(part, axis=1).max()) for part in (places, late))
+    # Positions far from the origin carry their rounding.
+    moves = extent > _ROUNDING * float(np.abs(places).max())
+    around = late - late.mean(axis=1, keepdims=True)
+    steps = np.diff(late, axis=1)
+    return Measures(
+        start=float(track.t[0]),
+        speed=0.0,
+        extent=extent,
+        late_extent=extent / whole if moves else 0.0,
+        disorder=float(np.mean(steps**2) / np.mean(around**2)) if moves else 2.0,
+        noise=noise,
+    )
 
 
 def measure(track: SmoothTrack, first: int) -> Measures:

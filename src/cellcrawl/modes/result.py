@@ -48,6 +48,13 @@ class Measures:
         Median speed.
     straightness : float
         Net distance over path length.
+    extent : float
+        Largest extent along x or y after the first quarter of the time.
+    late_extent : float
+        The same over the extent of the whole track.
+    disorder : float
+        Mean square distance of successive positions over their variance, after the first quarter:
+        2 for positions without order, near 0 for a path.
     noise : float
         Estimated error of a recorded position.
     heading_error : float
@@ -70,6 +77,9 @@ class Measures:
     period: float = math.nan
     speed: float = math.nan
     straightness: float = math.nan
+    extent: float = math.nan
+    late_extent: float = math.nan
+    disorder: float = math.nan
     noise: float = math.nan
     heading_error: float = math.nan
 

@@ -20,6 +20,22 @@ class Condition(NamedTuple):
     fit: float
 
 
+def stationary(found: Measures, cell_radius: float | None = None) -> list[Condition]:
+    """Return the conditions of a cell at rest, of which any one is enough.
+
+    Of two positions at rest, the mean square distance is twice the variance of one along each
+    axis; a cell that moves comes far less far from one record to the next than in all.
+    """
+    conditions = [
+        _above("its positions scatter without order", found.disorder, 1.0, 0.4),
+        _below("it stopped where it came to", found.late_extent, 0.02, 0.01),
+    ]
+    if cell_radius is not None:
+        moved = found.extent / cell_radius
+        conditions.append(_below("it moves less than its size", moved, 0.05, 0.03))
+    return conditions
+
+
 def gliding(found: Measures) -> list[Condition]:
     """Return the conditions of "moves in a straight line with no turns"."""
     return [

@@ -12,6 +12,9 @@ from cellcrawl.observables.track import Track
 HEADING_ERROR = 0.04
 """Error of the heading, in rad, that smoothing aims at."""
 _WIDEST = 0.08  # of the duration: smoothing never goes beyond, or nothing would be left to turn
+_ITERATIONS = 6
+_NARROWEST = 0.3  # of the sampling interval: narrower smoothing changes nothing
+_ROUGH = 1.5  # smoothing that removes more than this many times the noise removes motion
 _NORMAL = 1.4826  # standard deviation over median absolute deviation of a normal distribution
 
 
@@ -64,26 +67,27 @@ def smooth(track: Track) -> SmoothTrack:
     """Smooth a track as little as its noise asks for.
 
     The width of the Gaussian is the smallest for which the expected error of the heading at the
-    median speed is `HEADING_ERROR`; a track without noise keeps its records as they are. The error
-    of the velocity of positions with error ``s`` every ``dt``, smoothed over ``w``, is
+    median speed is `HEADING_ERROR`, or less if that would move the positions by more than their
+    noise can explain; a track without noise keeps its records as they are. The error of the
+    velocity of positions with error ``s`` every ``dt``, smoothed over ``w``, is
     ``sqrt(s**2 dt / (4 sqrt(pi) w**3))`` along each axis.
     """
     even = np.linspace(track.t[0], track.t[-1], track.t.size)
     step = float(even[1] - even[0])
     places = np.stack([np.interp(even, track.t, values) for values in (track.x, track.y)])
     noise = position_noise(track)
-    width = 0.0
-    smoothed = places
-    for _ in range(6):
-        velocity = np.gradient(smoothed, step, axis=1)
-        pace = float(np.median(np.hypot(*velocity)))
-        wanted = _width_for(noise, step, pace, track.duration)
-        if wanted <= 1.05 * width or wanted < 0.3 * step:
+    gaussian = _Gaussian(places)
+    width, smoothed = 0.0, places
+    for _ in range(_ITERATIONS):
+        wanted = _width_for(noise, step, _pace(smoothed, step), track.duration)
+        if wanted <= 1.05 * width or wanted < _NARROWEST * step:
             break
-        width = wanted
-        smoothed = _gaussian(places, width / step)
+        width, smoothed = wanted, gaussian.smoothed(wanted / step)
+    while width > _NARROWEST * step and _removed(places, smoothed) > _ROUGH * noise:
+        width *= 0.7
+        smoothed = gaussian.smoothed(width / step)
     velocity = np.gradient(smoothed, step, axis=1)
-    speed = np.hypot(*velocity)
+    speed = np.hypot(velocity[0], velocity[1])
     return SmoothTrack(
         even,
         smoothed[0],
@@ -96,6 +100,30 @@ def smooth(track: Track) -> SmoothTrack:
     )
 
 
+class _Gaussian:
+    """Gaussian smoothing of rows by Fourier transform; rows go on by reflection at their ends."""
+
+    def __init__(self, rows: np.ndarray) -> None:
+        size = rows.shape[1]
+        self._line = rows[:, :1] + (rows[:, -1:] - rows[:, :1]) * np.linspace(0.0, 1.0, size)
+        inside = rows - self._line
+        odd = np.concatenate([inside[:, :-1], -inside[:, :0:-1]], axis=1)
+        self._spectrum = np.fft.rfft(odd, axis=1)
+        self._frequency = np.pi / (size - 1) * np.arange(self._spectrum.shape[1])
+
+    def smoothed(self, width: float) -> np.ndarray:
+        """Return the rows smoothed over ``width`` samples."""
+        size = self._line.shape[1]
+        filtered = self._spectrum * np.exp(-0.5 * (width * self._frequency) ** 2)
+        smoothed: np.ndarray = self._line + np.fft.irfft(filtered, 2 * (size - 1), axis=1)[:, :size]
+        return smoothed
+
+
+def _pace(places: np.ndarray, step: float) -> float:
+    moved = np.diff(places, axis=1)
+    return float(np.median(np.hypot(moved[0], moved[1]))) / step
+
+
 def _width_for(noise: float, step: float, pace: float, duration: float) -> float:
     if noise == 0.0:
         return 0.0
@@ -104,6 +132,11 @@ def _width_for(noise: float, step: float, pace: float, duration: float) -> float
     if allowed <= 0.0:
         return widest
     return min(widest, float(np.cbrt((noise / allowed) ** 2 * step / (4.0 * math.sqrt(math.pi)))))
+
+
+def _removed(places: np.ndarray, smoothed: np.ndarray) -> float:
+    """Return the typical distance along an axis by which smoothing moved the positions."""
+    return float(_NORMAL * np.median(np.abs(places - smoothed)))
 
 
 def _heading_error(noise: float, step: float, width: float, pace: float) -> float:
@@ -115,18 +148,6 @@ def _heading_error(noise: float, step: float, width: float, pace: float) -> floa
     if width > 0.0:
         central = min(central, noise * math.sqrt(step / (4.0 * math.sqrt(math.pi) * width**3)))
     return central / pace
-
-
-def _gaussian(places: np.ndarray, width: float) -> np.ndarray:
-    """Smooth rows over ``width`` samples; the ends go on by reflection through the end points."""
-    reach = min(max(1, math.ceil(4.0 * width)), places.shape[1] - 1)
-    offsets = np.arange(-reach, reach + 1)
-    kernel = np.exp(-0.5 * (offsets / width) ** 2)
-    kernel /= kernel.sum()
-    before = 2.0 * places[:, :1] - places[:, reach:0:-1]
-    after = 2.0 * places[:, -1:] - places[:, -2 : -2 - reach : -1]
-    padded = np.concatenate([before, places, after], axis=1)
-    return np.stack([np.convolve(row, kernel, mode="valid") for row in padded])
 
 
 def _neighbour_weights(times: np.ndarray) -> np.ndarray:
