@@ -1,17 +1,17 @@
-"""Where the records of a running simulation go: to memory, to disk in blocks, to a plain track."""
+"""Where the records of a running simulation go: to memory, or to a store on disk in blocks."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from typing import Any, ClassVar, NamedTuple, Protocol, TypeVar
+from typing import Any, ClassVar, Protocol, TypeVar
 
 import numpy as np
 import xarray as xr
 
 from cellcrawl.simulation.dataset import encode_attributes, frames_to_dataset
 from cellcrawl.simulation.storage import RunStore, open_run
-from cellcrawl.solvers import Frame, Instant
+from cellcrawl.solvers import Frame
 
 Checkpoint = dict[str, np.ndarray]
 Kept_co = TypeVar("Kept_co", covariant=True)
@@ -94,39 +94,3 @@ class StoreRecorder:
         block = frames_to_dataset(frames, {}) if frames else None
         self._store.finish(self._records, block, checkpoint, last)
         return open_run(self._store.path)
-
-
-class Track(NamedTuple):
-    """The cell as a whole over time: arrays of shape (records,), and the run's attributes."""
-
-    time: np.ndarray
-    centroid_x: np.ndarray
-    centroid_y: np.ndarray
-    tension: np.ndarray
-    length: np.ndarray
-    area: np.ndarray
-    attributes: dict[str, Any]
-
-
-class TrackRecorder:
-    """Keeps the cell as a whole, not its edge: the cheapest run, for sweeps."""
-
-    edges: ClassVar[bool] = False
-
-    def __init__(self) -> None:
-        self._rows: list[tuple[float, ...]] = []
-
-    def record(self, record: Instant) -> bool:
-        self._rows.append(tuple(getattr(record, name) for name in Track._fields[:-1]))
-        return False
-
-    def commit(self, checkpoint: Checkpoint, attributes: Mapping[str, Any]) -> None:
-        return
-
-    def finish(
-        self, closing: Instant | None, checkpoint: Checkpoint, attributes: Mapping[str, Any]
-    ) -> Track:
-        if closing is not None:
-            self.record(closing)
-        columns = dict(zip(Track._fields, np.array(self._rows).T, strict=False))
-        return Track(**columns, attributes=dict(attributes))

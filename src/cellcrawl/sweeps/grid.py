@@ -91,7 +91,7 @@ class Grid:
         if not 0 <= index < len(self):
             raise IndexError(f"run {index} of a grid of {len(self)}")
         changes: dict[str, Any] = {}
-        for name in reversed(self.axes):
+        for name in reversed(tuple(self.axes)):
             index, place = divmod(index, len(self.axes[name]))
             changes[name] = self.axes[name][place]
         return self._described({**(self.points[index] if self.points else {}), **changes})
@@ -174,7 +174,9 @@ class Grid:
     def from_toml(cls, source: str | Path, **settings: Any) -> Grid:
         """Read from a TOML file or text with the tables of `from_dict`."""
         content = read_toml(source)
-        known_names(f"the grid file {source}" if "\n" not in str(source) else "it", content, _TABLES)
+        known_names(
+            f"the grid file {source}" if "\n" not in str(source) else "it", content, _TABLES
+        )
         if not content.get("axes") and not content.get("points"):
             raise InputError("a grid file needs [axes], such as r_on = [20, 30], or [[points]]")
         return cls.from_dict({"run": {}, **content}, **settings)
