@@ -298,4 +298,4 @@ def _grid_tolerance(rtol: float) -> float:
 
 def _local_tolerance(rtol: float) -> float:
     """Local error that leaves a global error of about ``rtol`` at t = 5 (measured)."""
-    return float(0.08 * rtol)
+    return float(0.08 * rtol * min(1.0, (rtol / 1e-4) ** 0.05))
