@@ -59,7 +59,7 @@ def measure(track: SmoothTrack, first: int) -> Measures:
     path = float(np.sum(np.hypot(np.diff(track.x[first:]), np.diff(track.y[first:]))))
     net = math.hypot(track.x[-1] - track.x[first], track.y[-1] - track.y[first])
     against = np.abs(swings.angle[swings.angle * turned < 0.0])
-    rate = turned / (times[-1] - times[0])
+    rate = turned / float(times[-1] - times[0])
     return Measures(
         start=float(times[0]),
         turned=turned,

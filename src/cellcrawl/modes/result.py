@@ -21,7 +21,7 @@ class Measures:
     turned : float
         Net change of heading, positive to the left.
     swings : int
-        How often the heading swings to one side and then the other.
+        How often the heading swings to one side or the other.
     swing : float
         Mean size of a swing, without the two cut off at the ends when there are others.
     widest_swing : float
@@ -99,16 +99,36 @@ class Classification:
         How well gliding, rotational and zigzag each fit, from 0 to 1.
     measures : Measures
         What the rule looked at.
-    reason : str
-        The deciding measure, in words.
+    doubt : str
+        The condition that holds least, in words; "" if all hold fully.
     """
 
     mode: str
     confidence: float
     memberships: dict[str, float]
     measures: Measures
-    reason: str
+    doubt: str
 
     def as_row(self) -> dict[str, Any]:
         """Return mode, confidence and measures as one flat row of a table."""
-        return {"mode": self.mode, "confidence": self.confidence, **asdict(self.measures)}
+        row = {"mode": self.mode, "confidence": self.confidence, **asdict(self.measures)}
+        return {**row, "doubt": self.doubt}
+
+    def summary(self) -> str:
+        """Return what the mode was seen by, in a few words."""
+        told = self._told()
+        return "; but ".join(part for part in (told, self.doubt) if part)
+
+    def _told(self) -> str:
+        seen = self.measures
+        side = "left" if seen.turned > 0.0 else "right"
+        match self.mode:
+            case "gliding":
+                return f"turned {abs(math.degrees(seen.turned)):.0f} degrees in all"
+            case "rotational":
+                return f"turns {side} only, once round in {seen.period:.3g}"
+            case "zigzag":
+                swing = f"{seen.swings} swings of {math.degrees(seen.swing):.0f} degrees"
+                return f"{swing}, left and right in {seen.period:.3g}"
+            case _:
+                return ""
