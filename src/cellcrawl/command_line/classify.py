@@ -74,9 +74,8 @@ def _results(file: Path, cell_radius: float | None) -> Iterator[tuple[str, Class
     import cellcrawl as cc
 
     if file.suffix in _RUNS:
-        with cc.open_run(file) as dataset:
-            with _complaints_name(str(file)):
-                yield str(file), cc.classify(dataset)
+        with cc.open_run(file) as dataset, _complaints_name(str(file)):
+            yield str(file), cc.classify(dataset)
         return
     for name, (t, x, y) in _tracks(file).items():
         label = f"{file} {name}".rstrip()

@@ -30,13 +30,13 @@ class Measures:
         From 0, as much to the left as to the right, to 1, all to one side: of complete swings.
     counter_turn : float
         Largest swing against the net change of heading.
-    evenness : float
-        Smallest share of the net change of heading in a third of the time, over 1/3: 1 for a
-        circle, 0 when a third of the time has no turn.
     angle_spread, interval_spread : float
         Standard deviation over mean of the sizes of swings and of the times between them.
     wander : float
         Range of the heading around its straight line in time.
+    unevenness : float
+        That range over the net change of heading: 0 for a circle, 1/n for n equal turns at equal
+        times, 1 for a single turn.
     turning_rate : float
         Net change of heading over time, positive to the left.
     circling_radius : float
@@ -68,10 +68,10 @@ class Measures:
     widest_swing: float = math.nan
     one_sidedness: float = math.nan
     counter_turn: float = math.nan
-    evenness: float = math.nan
     angle_spread: float = math.nan
     interval_spread: float = math.nan
     wander: float = math.nan
+    unevenness: float = math.nan
     turning_rate: float = math.nan
     circling_radius: float = math.nan
     period: float = math.nan

@@ -53,7 +53,7 @@ def rotational(found: Measures, cell_radius: float | None = None) -> list[Condit
     conditions = [
         _above("it turns too little in all", abs(found.turned), _rad(60.0), _rad(30.0)),
         _below("it turns back at times", found.counter_turn, _rad(45.0), _rad(20.0)),
-        _above("it does not turn throughout", found.evenness, 0.3, 0.25),
+        _below("it turns by fits and starts", found.unevenness, 0.4, 0.12),
     ]
     if cell_radius is not None:
         circle = found.circling_radius / cell_radius

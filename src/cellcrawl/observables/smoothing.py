@@ -43,6 +43,11 @@ class SmoothTrack:
     width: float
     heading_error: float
 
+    @property
+    def unsure(self) -> int:
+        """How many records at each end are smoothed over fewer neighbours than the others."""
+        return min(round(2.0 * self.width / float(self.t[1] - self.t[0])), self.t.size // 4)
+
 
 def position_noise(track: Track) -> float:
     """Return the error of a recorded position, standard deviation along one axis.
