@@ -24,6 +24,8 @@ SHORTEST_RUN = 50.0
 _LATER_STARTS = (0.0, 1 / 9, 2 / 9, 3 / 9)
 """Where the transient may end, as parts of what follows the onset."""
 _PREFER_EARLY = 0.3  # a start that leaves out the part p must fit better by this times p
+_FEW_TURNS = 3  # a track that has turned less often, and less than once round, may be any mode
+_UNTOLD = 0.6  # the confidence it can have
 
 
 def classify(dataset: xr.Dataset, *, use_size: bool = True) -> Classification:
@@ -150,7 +152,10 @@ def _apply_rule(track: SmoothTrack, start: int, cell_radius: float | None) -> Cl
         conditions, key=lambda name: sum(map(_fit, conditions[name])) / len(conditions[name])
     )
     doubt = f"not {nearest}: {min(conditions[nearest], key=_fit).words}"
-    return Classification("other", 1.0 - fits[mode], fits, found, doubt)
+    sure = 1.0 - fits[mode]
+    if found.swings < _FEW_TURNS and abs(found.turned) < 2.0 * math.pi:
+        sure, doubt = min(sure, _UNTOLD), "it turns too few times to tell"
+    return Classification("other", sure, fits, found, doubt)
 
 
 def _fit(condition: rule.Condition) -> float:

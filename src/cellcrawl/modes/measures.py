@@ -29,12 +29,11 @@ def measure_rest(track: Track, noise: float) -> Measures:
     """Measure whether a cell moves at all, after the first quarter of the time."""
     after = int(np.searchsorted(track.t, track.t[0] + _FIRST_MOVES * track.duration))
     places = np.stack([track.x, track.y])
-    late = places[:, after:]
-    whole, extent = (float(np.ptp(part, axis=1).max()) for part in (places, late))
+    around = places[:, after:] - places[:, after:].mean(axis=1, keepdims=True)
+    whole, extent = _extent(places), _extent(places[:, after:])
     # Positions far from the origin carry their rounding.
     moves = extent > _ROUNDING * float(np.abs(places).max())
-    around = late - late.mean(axis=1, keepdims=True)
-    steps = np.diff(late, axis=1)
+    steps = np.diff(around, axis=1)
     return Measures(
         start=float(track.t[0]),
         speed=0.0,
@@ -43,6 +42,12 @@ def measure_rest(track: Track, noise: float) -> Measures:
         disorder=float(np.mean(steps**2) / np.mean(around**2)) if moves else 2.0,
         noise=noise,
     )
+
+
+def _extent(places: np.ndarray) -> float:
+    """Return the largest distance of positions (2, record) from their mean, twice."""
+    around = places - places.mean(axis=1, keepdims=True)
+    return 2.0 * float(np.sqrt(np.max(np.sum(around**2, axis=0))))
 
 
 def measure(track: SmoothTrack, first: int) -> Measures:

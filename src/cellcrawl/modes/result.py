@@ -49,7 +49,7 @@ class Measures:
     straightness : float
         Net distance over path length.
     extent : float
-        Largest extent along x or y after the first quarter of the time.
+        Twice the largest distance from the mean position, after the first quarter of the time.
     late_extent : float
         The same over the extent of the whole track.
     disorder : float

@@ -53,7 +53,7 @@ def rotational(found: Measures, cell_radius: float | None = None) -> list[Condit
     conditions = [
         _above("it turns too little in all", abs(found.turned), _rad(60.0), _rad(30.0)),
         _below("it turns back at times", found.counter_turn, _rad(45.0), _rad(20.0)),
-        _below("it turns by fits and starts", found.unevenness, 0.4, 0.12),
+        _below("it turns by fits and starts", found.unevenness, 0.4, 0.24),
     ]
     if cell_radius is not None:
         circle = found.circling_radius / cell_radius
@@ -68,12 +68,12 @@ def zigzag(found: Measures) -> list[Condition]:
     loop.
     """
     return [
-        _above("it swings too few times", found.swings, 3.0, 1.5),
+        _above("it swings too few times", found.swings, 3.0, 2.5),
         _above("its swings are too small", found.swing, _rad(24.0), _rad(8.0)),
         _below("its swings are loops", found.widest_swing, math.pi, _rad(20.0)),
         _below("it swings more to one side", found.one_sidedness, 0.4, 0.15),
-        _below("its swings differ in size", found.angle_spread, 0.4, 0.15),
-        _below("its swings differ in time", found.interval_spread, 0.4, 0.15),
+        _below("its swings differ in size", found.angle_spread, 0.4, 0.25),
+        _below("its swings differ in time", found.interval_spread, 0.4, 0.25),
     ]
 
 
