@@ -68,7 +68,7 @@ def zigzag(found: Measures) -> list[Condition]:
     loop.
     """
     return [
-        _above("it swings too few times", found.swings, 3.0, 2.5),
+        _above("it swings too few times", found.swings, 3.0, 4.0),
         _above("its swings are too small", found.swing, _rad(24.0), _rad(8.0)),
         _below("its swings are loops", found.widest_swing, math.pi, _rad(20.0)),
         _below("it swings more to one side", found.one_sidedness, 0.4, 0.15),
