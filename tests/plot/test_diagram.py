@@ -14,8 +14,10 @@ import cellcrawl as cc
 from cellcrawl import sweeps
 from cellcrawl.modes import MODES
 from cellcrawl.plot.mode_symbols import MODE_SYMBOLS
+from cellcrawl.plot.symbols import MEASURE_LABELS
 from cellcrawl.sweeps import worker
 from cellcrawl.sweeps.executors import InProcess
+from cellcrawl.sweeps.measures import MEASURES
 from cellcrawl.sweeps.planes import majority, means, plane
 from cellcrawl.sweeps.worker import Outcome
 
@@ -112,11 +114,11 @@ def test_a_map_shows_the_mean_at_each_point(swept):
 
 
 def test_refined_diagrams_are_regions(tmp_path, pretending):
-    axes = {"r_on": [20.0, 30.0], "zeta_1": [500.0, 600.0], "seed": [1]}
-    refined = sweeps.refine(axes, tmp_path / "out", InProcess(), levels=2)
+    axes = {"r_on": [20.0, 30.0, 50.0, 60.0], "zeta_1": [500.0, 600.0], "seed": [1]}
+    refined = sweeps.refine(axes, tmp_path / "out", InProcess(), levels=1)
     drawn_axes = cc.plot.diagram(refined)
     tiles = drawn_axes.collections[0].get_array()
-    assert tiles.shape == (5, 5, 3)  # one a point of the finest lattice
+    assert tiles.shape == (3, 7, 3)  # one a point of the finest lattice
     assert drawn(drawn_axes.figure)
     assert drawn(cc.plot.measure_map(refined, "speed").figure)
 
@@ -124,6 +126,10 @@ def test_refined_diagrams_are_regions(tmp_path, pretending):
 def test_every_mode_has_a_symbol_of_its_own():
     assert set(MODES) < set(MODE_SYMBOLS)
     assert len(set(MODE_SYMBOLS.values())) == len(MODE_SYMBOLS)
+
+
+def test_every_measure_has_a_label():
+    assert set(MEASURE_LABELS) == set(MEASURES)
 
 
 def test_what_cannot_be_drawn_is_told_in_one_line(swept, tmp_path, pretending):

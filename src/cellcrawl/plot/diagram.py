@@ -15,7 +15,7 @@ from matplotlib.path import Path
 from cellcrawl.errors import InputError
 from cellcrawl.plot.mode_symbols import EDGE, MODE_SYMBOLS
 from cellcrawl.plot.style import PAGE, axes_or_new, figure_of
-from cellcrawl.plot.symbols import parameter_label
+from cellcrawl.plot.symbols import MEASURE_LABELS, parameter_label
 from cellcrawl.sweeps import Sweep
 from cellcrawl.sweeps.planes import Plane, majority, means, plane
 
@@ -115,8 +115,6 @@ def measure_map(
     InputError
         For an unknown measure, or as for `diagram`.
     """
-    from cellcrawl.sweeps.measures import MEASURES
-
     table = _rows(sweep)
     values = means(table, measure, x, y)
     found = plane(table, x, y)
@@ -136,7 +134,7 @@ def measure_map(
         axes.set_ylabel(parameter_label(found.y_name))
         if colorbar:
             bar = axes.figure.colorbar(drawn, ax=axes, pad=0.02)
-            bar.set_label(MEASURES[measure].partition(",")[0])
+            bar.set_label(MEASURE_LABELS[measure])
             bar.outline.set_visible(False)
     return axes
 
