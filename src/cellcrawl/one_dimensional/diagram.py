@@ -14,7 +14,7 @@ from cellcrawl.linear.characteristic import checked_values
 from cellcrawl.linear.level_curves import level_curves
 from cellcrawl.one_dimensional import drive
 from cellcrawl.one_dimensional.cell import FREE, Anchoring, checked_cell
-from cellcrawl.one_dimensional.regimes import LATE, REGIMES, THRESHOLD, measured
+from cellcrawl.one_dimensional.regimes import LATE, REGIMES, THRESHOLD, Regime, measured
 from cellcrawl.one_dimensional.rosenbrock import N_FRONT, N_REAR, X_FRONT, X_REAR
 from cellcrawl.one_dimensional.starts import STARTS, TwoEdges, start_of
 from cellcrawl.one_dimensional.theory import crawling_margin, margin
@@ -95,7 +95,7 @@ def phase_diagram(
     dims = ("start", first, second)
     about = {
         "speed": {"long_name": "mean speed of the cell's middle", "units": "R_0 k_off0"},
-        "swing": {"long_name": "peak-to-peak change of the bound fraction", "units": "1"},
+        "swing": {"long_name": "how far the bound fraction both rises and falls", "units": "1"},
         "polarity": {"long_name": "largest difference of bound fraction", "units": "1"},
     }
     variables: dict[str, Any] = {
@@ -167,7 +167,7 @@ def boundaries(
 
 def _label(
     cell: Parameters, start: TwoEdges, times: np.ndarray, rtol: float, anchoring: Anchoring
-) -> Any:
+) -> Regime:
     records, _, _, ending = integrate(cell, start, times, rtol, anchoring)
     if ending != drive.REACHED:
         return measured(np.full((2, 2), np.nan), THRESHOLD, np.nan)._replace(name="failed")

@@ -179,8 +179,8 @@ def _nodes_for(p: Parameters, length: float) -> int:
     wanted = length / (_NODE * math.sqrt(p.D / (p.r_on + p.r_p)))
     if wanted > _MOST_NODES:
         raise InputError(
-            f"length = {length:g} at D = {p.D:g} needs {wanted:.0f} nodes, more than {_MOST_NODES}: "
-            "give a shorter edge, a larger D, or nodes"
+            f"length = {length:g} at D = {p.D:g} needs {wanted:.0f} nodes, more than "
+            f"{_MOST_NODES}: give a shorter edge, a larger D, or nodes"
         )
     return max(_FEWEST, 2 * math.ceil(0.5 * wanted))
 

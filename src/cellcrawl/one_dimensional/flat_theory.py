@@ -67,7 +67,8 @@ def uniform_states(parameters: Parameters, tension: float) -> np.ndarray:
         pull: np.ndarray = y * (r + p.zeta_1 * p.r_on / (p.r_on + r)) - force
         return pull
 
-    return np.exp(all_roots(excess, 0.0, math.log1p(force) + 1e-9, 4001))
+    states: np.ndarray = np.exp(all_roots(excess, 0.0, math.log1p(force) + 1e-9, 4001))
+    return states
 
 
 def flat_growth_rates(

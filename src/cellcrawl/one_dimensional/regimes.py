@@ -25,7 +25,7 @@ class Regime(NamedTuple):
     name: str
     """One of `REGIMES`."""
     swing: float
-    """Peak-to-peak change of the bound fraction, of the edge that changes more."""
+    """How far the bound fraction both rises and falls, of the edge that changes more."""
     polarity: float
     """Largest difference of bound fraction between the edges."""
     takes_turns: bool
@@ -36,12 +36,14 @@ class Regime(NamedTuple):
     """Mean speed of the cell's middle over what was looked at, R_0 k_off0."""
 
 
-def regime(dataset: xr.Dataset, *, after: float | None = None, threshold: float = THRESHOLD) -> Any:
+def regime(
+    dataset: xr.Dataset, *, after: float | None = None, threshold: float = THRESHOLD
+) -> Regime:
     """Say which regime a run of two edges ends in.
 
     The rule looks at the bound fractions after the transient. An edge *swings* where its bound
-    fraction changes by more than the threshold, the cell is *polar* where the two edges differ by
-    more than that at some time.
+    fraction both rises and falls by more than the threshold (a slow drift only does one), the cell
+    is *polar* where the two edges differ by more than that at some time.
 
     ========== ====== ===== ==========================================================
     regime     swings polar
@@ -112,8 +114,10 @@ def measured(bound: np.ndarray, threshold: float, speed: float) -> Regime:
 
 def _measures(bound: np.ndarray) -> tuple[float, float, float, float]:
     difference = bound[:, 0] - bound[:, 1]
+    rise = np.max(bound - np.minimum.accumulate(bound), axis=0)
+    fall = np.max(np.maximum.accumulate(bound) - bound, axis=0)
     return (
-        float(np.ptp(bound, axis=0).max()),
+        float(np.minimum(rise, fall).max()),
         float(np.abs(difference).max()),
         float(difference.min()),
         float(difference.max()),

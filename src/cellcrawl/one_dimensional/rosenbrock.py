@@ -4,8 +4,8 @@ Six stages, L-stable and stiffly accurate, with an embedded method of order thre
 of the consistent law decays at rates of thousands; an implicit step follows it without small steps,
 and its linear system is an arrow that is solved by hand. Linear invariants are kept to rounding.
 
-Kernels use the letters ``n`` bound fraction, ``y = log r``, ``sigma`` tension, ``x`` how far an edge
-has moved outwards.
+Kernels use the letters ``n`` bound fraction, ``y = log r``, ``sigma`` tension, ``x`` how far an
+edge has moved outwards. The imbalance is half of what springs pull more on the front.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ _STAGES: Final = 6
 
 @kernel
 def off_rate(y: float, n: float, zeta_1: float, force: float) -> float:
-    """``log r`` from a guess that is usually near: two Halley steps, or the search that cannot miss."""
+    """``log r``: two Halley steps from a guess that is usually near, or the search."""
     z = y + halley_step(y, exponential(y), n, zeta_1, force)
     z = z + halley_step(z, exponential(z), n, zeta_1, force)
     residual = friction(z, exponential(z), n, zeta_1) - force

@@ -2,7 +2,8 @@
 
 Space is a periodic line of equal spacing with differences of order eight. Kernels use the letters
 ``n`` bound fraction, ``u`` height of the edge, ``y = log r``; ``kappa = -u_ss`` is the curvature of
-a gentle slope, positive where the edge bulges outwards. A state holds n and u of all nodes, then the tension.
+a gentle slope, positive where the edge bulges outwards. A state holds n and u of all
+nodes, then the tension.
 """
 
 from __future__ import annotations

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
-from cellcrawl.errors import InputError
+from cellcrawl.errors import InputError, nearest_name
 from cellcrawl.one_dimensional.cell import still_tension
 from cellcrawl.parameters import Parameters
-from cellcrawl.validation import nearest_name, real_number, shown
+from cellcrawl.validation import real_number, shown
 
 _HIGHEST_TENSION = 1e6
 
