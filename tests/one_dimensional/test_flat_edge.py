@@ -38,7 +38,7 @@ def test_high_waves_are_those_of_the_round_cell():
     # k^2 in place of k^2 - 1, and no (1 + h) in the tension
     k = np.array([20.0, 40.0])
     flat, round_cell = od.flat_growth_rates(P, k), cc.linear.growth_rates(P, k)
-    np.testing.assert_allclose(flat, round_cell, rtol=0.01)
+    np.testing.assert_allclose(flat, round_cell, rtol=0.02)
 
 
 @pytest.mark.parametrize(
@@ -172,17 +172,30 @@ def test_a_mirrored_start_gives_the_mirrored_run():
     )
 
 
-def test_space_is_resolved_to_order_eight():
+def test_runs_converge_with_the_nodes():
     def run(nodes):
         made = od.simulate_flat_edge(
-            P, 0.2, start=od.FlatNoise(seed=2, waves=6), nodes=nodes, rtol=1e-10, save_every=0.2
+            P, 0.05, start=od.FlatNoise(seed=2, waves=6), nodes=nodes, rtol=1e-10, save_every=0.05
         )
         return made.bound_fraction.values[-1]
 
-    fine = run(384)
-    errors = [np.abs(run(nodes) - fine[:: 384 // nodes]).max() for nodes in (48, 96)]
-    assert math.log2(errors[0] / errors[1]) > 6.5
-    assert errors[1] < 1e-6
+    fine = run(768)
+    errors = [np.abs(run(nodes) - fine[:: 768 // nodes]).max() for nodes in (96, 192)]
+    assert 6.5 < math.log2(errors[0] / errors[1]) < 8.5
+    assert errors[1] < 1e-8
+
+
+def test_the_second_derivative_is_of_order_eight():
+    from cellcrawl.one_dimensional.runge_kutta import second_derivative
+
+    errors = []
+    for nodes in (32, 64):
+        s = 2 * math.pi / nodes * np.arange(nodes)
+        out = np.empty(nodes)
+        second_derivative(np.exp(np.sin(s)), 2 * math.pi / nodes, out)
+        exact = (np.cos(s) ** 2 - np.sin(s)) * np.exp(np.sin(s))
+        errors.append(np.abs(out - exact).max())
+    assert abs(math.log2(errors[0] / errors[1]) - 8.0) < 0.3
 
 
 def test_errors_shrink_with_the_tolerance():
