@@ -120,7 +120,7 @@ def test_edges_that_take_turns_do_the_same_half_a_period_apart():
     late = run.bound_fraction.sel(time=slice(20.0, None))
     front, rear = late.values.T
     crossings = np.flatnonzero(np.diff(np.sign(front - rear)))
-    half_period = int(round(np.diff(crossings).mean()))
+    half_period = round(np.diff(crossings).mean())
     moved = np.abs(front[half_period:] - rear[:-half_period]).max()
     assert np.ptp(front) > 0.3
     assert moved < 0.05 * np.ptp(front)
@@ -179,6 +179,22 @@ def test_a_diagram_labels_each_cell_as_a_run_of_its_own():
     assert diagram.speed.sel(start="large", r_on=10, zeta_1=600).item() == pytest.approx(
         od.crawling_states(P.replace(r_on=10))[-1].speed, rel=1e-4
     )
+
+
+def test_a_run_that_cannot_go_on_is_named_and_keeps_what_it_has():
+    # at few linkers and strong adhesion the springs pull an edge below no force at all
+    p = cc.Parameters(r_on=2, zeta_1=1500, elasticity="consistent")
+    run = od.simulate_two_edges(p, 20.0, start="large", anchoring=BODY)
+    assert run.attrs["status"] == "out_of_range"
+    assert run.sizes["time"] > 1
+    assert bool(np.isfinite(run.bound_fraction).all())
+    assert od.regime(run).name == "failed"
+    diagram = od.phase_diagram(
+        p, r_on=[2, 25], zeta_1=[600, 1500], starts="large", anchoring=BODY, t_end=20.0
+    )
+    codes = diagram.regime.values[0]
+    assert od.REGIMES[codes[0, 1]] == "failed"
+    assert od.REGIMES[codes[1, 0]] == "bipedal"
 
 
 def test_boundaries_lie_where_growth_and_crawling_begin():

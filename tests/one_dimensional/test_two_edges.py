@@ -60,7 +60,7 @@ def test_breathing_is_that_of_the_round_cell_but_for_curvature():
 @pytest.mark.parametrize(("r_on", "zeta_1"), [(25, 600), (16, 460), (50, 700)])
 def test_small_antisymmetric_perturbations_grow_as_theory_says(r_on, zeta_1, elasticity, anchoring):
     p = cc.Parameters(r_on=r_on, zeta_1=zeta_1, elasticity=elasticity)
-    n, a, b, c, q = still(p)
+    n, a, b, _, q = still(p)
     rates = od.growth_rates(p, "antisymmetric", anchoring=anchoring)
     size = 1e-5
     start = od.TwoEdges(front=n + size, rear=n - size)
@@ -103,7 +103,7 @@ def test_tension_follows_the_length_to_rounding_and_n_stays_a_fraction(elasticit
     drift = run.tension - stiffness * run.length
     assert float(drift.max() - drift.min()) <= 1e-13 * stiffness * 100
     assert float(run.tension.max() - run.tension.min()) > 10.0
-    assert 0.0 <= float(run.bound_fraction.min())
+    assert float(run.bound_fraction.min()) >= 0.0
     assert float(run.bound_fraction.max()) <= 1.0
     assert float(run.off_rate.min()) >= 1.0
 
@@ -125,9 +125,7 @@ def test_force_balance_and_velocity_hold_at_every_record():
 @pytest.mark.parametrize("anchoring", [od.Anchoring(), BODY])
 def test_exchanging_the_edges_mirrors_the_run(anchoring):
     p = P.replace(elasticity="consistent")
-    one = od.simulate_two_edges(
-        p, 8.0, start=od.TwoEdges(front=0.5, rear=0.2), anchoring=anchoring
-    )
+    one = od.simulate_two_edges(p, 8.0, start=od.TwoEdges(front=0.5, rear=0.2), anchoring=anchoring)
     other = od.simulate_two_edges(
         p, 8.0, start=od.TwoEdges(front=0.2, rear=0.5), anchoring=anchoring
     )

@@ -14,7 +14,7 @@ from cellcrawl.linear.characteristic import checked_values
 from cellcrawl.linear.level_curves import level_curves
 from cellcrawl.one_dimensional import drive
 from cellcrawl.one_dimensional.cell import FREE, Anchoring, checked_cell
-from cellcrawl.one_dimensional.regimes import LATE, REGIMES, THRESHOLD, Regime, measured
+from cellcrawl.one_dimensional.regimes import FAILED, LATE, REGIMES, THRESHOLD, Regime, measured
 from cellcrawl.one_dimensional.rosenbrock import N_FRONT, N_REAR, X_FRONT, X_REAR
 from cellcrawl.one_dimensional.starts import STARTS, TwoEdges, start_of
 from cellcrawl.one_dimensional.theory import crawling_margin, margin
@@ -25,7 +25,7 @@ from cellcrawl.validation import known_names, one_of, real_number
 _RECORDS = 400
 _LONGEST = 1e4
 _MOST = 1_000_000
-_GRID = 60
+_GRID = (60, 200)
 BOUNDARIES = ("symmetric", "antisymmetric", "crawling")
 
 
@@ -161,7 +161,7 @@ def boundaries(
             return crawling_margin(parameters, anchoring, values)
         return margin(parameters, which, anchoring, values)
 
-    lines = (np.linspace(axis[0], axis[-1], max(_GRID, axis.size)) for axis in (x, y))
+    lines = (np.linspace(axis[0], axis[-1], int(np.clip(axis.size, *_GRID))) for axis in (x, y))
     return level_curves(field, *lines)
 
 
@@ -170,7 +170,7 @@ def _label(
 ) -> Regime:
     records, _, _, ending = integrate(cell, start, times, rtol, anchoring)
     if ending != drive.REACHED:
-        return measured(np.full((2, 2), np.nan), THRESHOLD, np.nan)._replace(name="failed")
+        return FAILED
     late = records[1:]
     middle = 0.5 * (late[:, X_FRONT] - late[:, X_REAR])
     speed = float((middle[-1] - middle[0]) / (times[-1] - times[1]))

@@ -70,7 +70,7 @@ def run(
                 counters[REJECTED] += 1
                 h = trial * (max(0.2, _SAFETY * size**-0.25) if size < np.inf else 0.2)
                 if h < _SHORTEST:
-                    return STEP_TOO_SMALL, record
+                    return NO_ROOT if size == np.inf else STEP_TOO_SMALL, record
                 continue
             counters[STEPS] += 1
             state[:], y[:] = after, new_y

@@ -23,7 +23,7 @@ _NODE = 0.5
 """Distance between nodes, over the width of a front."""
 _HEIGHT_SCALE = 0.1
 _MOST_STEPS = 5_000_000
-_MOST_VALUES = 200_000_000
+_MOST_VALUES = 20_000_000
 _STIFFEST = 1e9
 _RESOLVED = 1e-3
 _ENDINGS: Final = {

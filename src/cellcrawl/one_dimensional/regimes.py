@@ -17,6 +17,7 @@ LATE: Final = 0.6
 THRESHOLD: Final = 0.02
 _TAKES_TURNS = 0.25
 _DRIFT = 0.1
+_FEWEST = 8
 
 
 class Regime(NamedTuple):
@@ -34,6 +35,10 @@ class Regime(NamedTuple):
     """Whether the measures agree between the two halves of what was looked at."""
     speed: float
     """Mean speed of the cell's middle over what was looked at, R_0 k_off0."""
+
+
+FAILED: Final = Regime("failed", np.nan, np.nan, False, False, np.nan)
+"""That of a run that could not go on."""
 
 
 def regime(
@@ -69,7 +74,8 @@ def regime(
     -------
     Regime
         The name with the measures behind it. Near a boundary a run may need longer than it has:
-        ``settled`` then is False, and the name is that of where it is on its way.
+        ``settled`` then is False, and the name is that of where it is on its way. A run that could
+        not go on has the name "failed".
 
     Raises
     ------
@@ -78,21 +84,18 @@ def regime(
     """
     threshold = real_number("threshold", threshold, 1e-6, 0.5)
     run = check_two_edges(dataset)
+    if run.attrs["status"] != "completed":
+        return FAILED
     times = run["time"].values
     begin = LATE * float(times[-1]) if after is None else real_number("after", after, 0.0, np.inf)
     late = times >= begin
-    if np.count_nonzero(late) < 8:
+    if np.count_nonzero(late) < _FEWEST:
         raise InputError(
             f"only {np.count_nonzero(late)} records from time {begin:g} on: eight are needed; save "
             "more often or run longer"
         )
     position = run["position"].values[late].mean(axis=1)
-    span = times[late][-1] - times[late][0]
-    speed = float((position[-1] - position[0]) / span)
-    if run.attrs["status"] != "completed":
-        return measured(run["bound_fraction"].values[late], threshold, speed)._replace(
-            name="failed"
-        )
+    speed = float((position[-1] - position[0]) / (times[late][-1] - times[late][0]))
     return measured(run["bound_fraction"].values[late], threshold, speed)
 
 

@@ -34,7 +34,7 @@ from cellcrawl.validation import real_number
 TENSION_SCALE: Final = 100.0
 """An error of the tension counts as much as one of the bound fraction that is this much smaller."""
 MOST_RECORDS: Final = 10_000_000
-_MOST_STEPS = 20_000_000
+_MOST_STEPS = 5_000_000
 _ENDINGS = {
     drive.REACHED: ("completed", "reached t_end"),
     drive.NO_ROOT: (
