@@ -73,7 +73,7 @@ def growth() -> Figure:
         ax = figure.add_subplot()
         for symmetry, colour in colours.items():
             rates = od.growth_rates(PRINTED, symmetry, zeta_1=strengths)
-            moves = np.take_along_axis(rates, np.abs(rates).argmax(-1)[:, None], -1)[:, 0]
+            moves = rates[:, 0] if symmetry == "symmetric" else rates.sum(axis=1)  # no shift
             ax.plot(strengths, moves.real, color=colour, label=f"{symmetry}, growth")
             if symmetry == "symmetric":
                 ax.plot(strengths, moves.imag, color=colour, linestyle="--", label="frequency")
@@ -169,7 +169,8 @@ def waves(folder: Path) -> None:
             f"{od.stuck_length(run, 0.45)[-1].item():.2f}, tension {run.tension[-1].item():.1f}"
         )
     rate = od.flat_growth_rates(cell, 3)[0]
-    print(f"train: theory {rate}, velocity {rate.imag / 3:.3f}")
+    first = od.wave_velocity(train).velocity[0].item()
+    print(f"train: theory {rate}, velocity {rate.imag / 3:.3f}, at first {first:.3f}")
     with paper_figure(PAGE, 2.0) as figure:
         panels = figure.subplots(1, 3, width_ratios=(1.0, 1.0, 1.0))
         for panel, run, title in zip(
@@ -200,10 +201,11 @@ def fronts() -> Figure:
         ax.plot(
             fine, [od.front_speed(cell, t) for t in fine], color="#56607a", label="theory, $h=0$"
         )
-        for h, marker, label in ((0.0, "o", "runs, $h=0$"), (0.01, "s", "runs, $h=0.01$")):
+        for h, marker, colour in ((0.0, "o", "#0072b2"), (0.01, "s", "#d55e00")):
             speeds = [_front(cell.replace(h=h), tension) for tension in tensions]
             print(f"fronts at h = {h}: {np.round(speeds, 4)}")
-            ax.plot(tensions, speeds, marker, markersize=3.5, label=label)
+            label = f"runs, $h={h:g}$"
+            ax.plot(tensions, speeds, marker, color=colour, markersize=3.5, label=label)
         ax.axhline(0.0, color="#999999", linewidth=0.5)
         ax.set(xlabel=r"tension $\sigma$ ($\zeta_0 v_\beta/2$)", ylabel="speed of a sticking front")
         ax.legend(frameon=False)

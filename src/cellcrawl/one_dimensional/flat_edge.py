@@ -153,7 +153,7 @@ def simulate_flat_edge(
     if made == 0:
         raise InputError(
             "this start has no off-rate somewhere: it is too concave for this tension; give a "
-            "gentler height or a lower tension"
+            "gentler height, a smaller amplitude or a lower tension"
         )
     status, message = _ENDINGS[ending]
     return _dataset(
