@@ -12,12 +12,25 @@ from typing import Final
 import numpy as np
 
 from cellcrawl._compile import kernel
+from cellcrawl.solvers.adaptive.drive import (
+    BEFORE,
+    END,
+    END_RATES,
+    GO_ON,
+    NOW,
+    PAUSED,
+    START,
+    START_RATES,
+    Rules,
+    after_step,
+    error_scales,
+    next_step,
+)
+from cellcrawl.solvers.adaptive.family import Family
 from cellcrawl.solvers.adaptive.scheme import Scheme
-from cellcrawl.solvers.adaptive.stabilised import BEFORE, END, END_RATES, NOW, START, START_RATES
 from cellcrawl.solvers.adaptive.stage_rates import stage_rates
 from cellcrawl.solvers.adaptive.step_error import relative_size
 
-ORDER: Final = 2
 _DAMPING: Final = 2.0 / 13.0
 _DEGREES: Final = (*range(2, 25), 27, 30, 34, 38, 43, 48, 54, 61, 69, 78, 88, 100, 115, 130, 150)
 
@@ -98,3 +111,45 @@ def step(
     for k in range(size):
         before[k] = 0.8 * (start[k] - end[k]) + 0.4 * h * (f0[k] + f[k])
     return True, relative_size(before, end, y.size, relief, contrast)
+
+
+@kernel
+def run(
+    target: float,
+    end: float,
+    most_steps: int,
+    rules: Rules,
+    scheme: Scheme,
+    control: np.ndarray,
+    counters: np.ndarray,
+    states: np.ndarray,
+    y: np.ndarray,
+    edges: np.ndarray,
+    mixed: np.ndarray,
+    work: np.ndarray,
+) -> int:
+    """Step until ``target`` is reached or something is for the caller to do; see `drive`."""
+    for _ in range(most_steps):
+        code, h, k = next_step(target, end, scheme, control, counters)
+        if code != GO_ON:
+            return code
+        relief, contrast = error_scales(h, rules, control)
+        rows = scheme.recurrence[scheme.first[k] :]
+        solved, size = step(
+            h, scheme.degrees[k], rows, relief, contrast, states, y, edges, mixed, work
+        )
+        code = after_step(h, solved, size, end, rules, control, counters, states, y, edges, work)
+        if code != GO_ON:
+            return code
+    return PAUSED
+
+
+FAMILY: Final = Family(
+    order=2,
+    power=2.0 / 3.0,  # the estimate is of third order,
+    amplified=0.05,
+    tension_weight=1.0,
+    tolerance=lambda rtol: (10.0 * rtol) ** 1.5,
+    scheme=chebyshev_scheme,
+    run=run,
+)

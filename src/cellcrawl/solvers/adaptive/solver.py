@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Final
 
 import numpy as np
 
@@ -12,9 +12,9 @@ from cellcrawl.parameters import EDGE_ROWS, Conditions
 from cellcrawl.solvers.adaptive import chebyshev, resolution, stabilised
 from cellcrawl.solvers.adaptive import drive as drive
 from cellcrawl.solvers.adaptive import state as layout
+from cellcrawl.solvers.adaptive.family import Family
 from cellcrawl.solvers.adaptive.frame import frame
 from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, stiffness
-from cellcrawl.solvers.adaptive.scheme import Scheme, fourth_order_scheme
 from cellcrawl.solvers.adaptive.staggered import HALO
 from cellcrawl.solvers.base import Breakdown, Frame, Solver
 from cellcrawl.starts.base import CellState
@@ -26,6 +26,9 @@ _USUAL_RTOL = 1e-4
 _TIGHT_RTOL = 1e-6  # below it a start is sampled more finely
 _STIFF_TENSION = 0.5  # share of the tension in the fastest decay from which second order is better
 _STIFF_TENSION_RTOL = 3e-6  # down to this tolerance
+FAMILIES: Final[dict[int, Family]] = {
+    family.order: family for family in (chebyshev.FAMILY, stabilised.FAMILY)
+}
 _SPATIAL_SHARE = 0.005  # of what the grid misses, in the error at t = 5
 
 
@@ -63,11 +66,17 @@ class AdaptiveSolver(Solver):
         self._min_nodes = whole_number("min_nodes", min_nodes, counts[0], self._max_nodes)
         self._control = np.zeros(drive.CONTROLS)
         self._counters = np.zeros(drive.COUNTERS, np.int64)
+        self._rules = {
+            order: family.rules(
+                self._rtol, _grid_tolerance(self._rtol), self._min_nodes, self._max_nodes
+            )
+            for order, family in FAMILIES.items()
+        }
         self._tally = np.zeros(4)  # fewest nodes, most nodes, regrids, largest closure error
         self._control[drive.TIME] = self._control[drive.PREVIOUS_TIME] = time
         self._edges: tuple[float, np.ndarray] | None = None
         self._counters[drive.RESTARTING] = 1
-        self._counters[drive.ORDER] = stabilised.ORDER
+        self._counters[drive.ORDER] = stabilised.FAMILY.order
         if start is not None:
             self._begin(start)
 
@@ -93,20 +102,18 @@ class AdaptiveSolver(Solver):
             end = self._conditions.next_break(now)
             if self._counters[drive.RESTARTING] and not self._restart(end):
                 return self._no_root(now)
-            code = drive.run(
+            family = self._family()
+            code = family.run(
                 target,
                 end,
-                self._local_tolerance(),
-                int(self._counters[drive.ORDER]),
                 _STEPS_PER_CALL,
-                _grid_tolerance(self._rtol),
-                (self._min_nodes, self._max_nodes),
+                self._rules[family.order],
+                family.scheme(),
                 self._control,
                 self._counters,
                 self._states,
                 self._log_rate,
                 self._rows(now, end),
-                *self._scheme(),
                 self._mixed,
                 self._work,
             )
@@ -200,7 +207,7 @@ class AdaptiveSolver(Solver):
     def _hold(self, states: np.ndarray) -> None:
         """Take up states PREVIOUS to CURRENT_RATES and make room for the work on them."""
         nodes = layout.nodes_of(states)
-        self._states = np.zeros((stabilised.STATE_ROWS, layout.size(nodes)))
+        self._states = np.zeros((drive.STATE_ROWS, layout.size(nodes)))
         self._states[: drive.TRIAL] = states
         self._work = np.zeros((WORK_ROWS, nodes + 2 * HALO))
         self._mixed = np.zeros((len(EDGE_ROWS) + 1, nodes))
@@ -246,7 +253,7 @@ class AdaptiveSolver(Solver):
             return self._edges[1]
         control = self._control
         h = drive.bounded_step(
-            control[drive.STEP], now, end, control[drive.RADIUS], self._scheme().limits
+            control[drive.STEP], now, end, control[drive.RADIUS], self._family().scheme().limits
         )
         times = [now, now + h / 3.0, now + 2.0 * h / 3.0, now + h]
         if h == end - now:
@@ -259,22 +266,14 @@ class AdaptiveSolver(Solver):
         local = self._conditions.edge(time, 2 * nodes)[:, 1::2]
         return np.vstack([local, np.full(nodes, self._conditions.tension_rate(time))])
 
-    def _scheme(self) -> Scheme:
-        if self._counters[drive.ORDER] == chebyshev.ORDER:
-            return chebyshev.chebyshev_scheme()
-        return fourth_order_scheme()
+    def _family(self) -> Family:
+        return FAMILIES[int(self._counters[drive.ORDER])]
 
     def _choose_order(self) -> None:
         """Second order where the tension is the stiffest and the tolerance loose, else fourth."""
         tension, radius = self._control[drive.TENSION_DECAY], self._control[drive.RADIUS]
         stiff = tension > _STIFF_TENSION * radius and self._rtol >= _STIFF_TENSION_RTOL
-        self._counters[drive.ORDER] = chebyshev.ORDER if stiff else stabilised.ORDER
-
-    def _local_tolerance(self) -> float:
-        """Local error that leaves a global error of about ``rtol`` at t = 5 (measured)."""
-        if self._counters[drive.ORDER] == chebyshev.ORDER:
-            return float((10.0 * self._rtol) ** 1.5)
-        return float(10.0 * self._rtol * (self._rtol / 1e-4) ** 0.15)
+        self._counters[drive.ORDER] = (chebyshev if stiff else stabilised).FAMILY.order
 
     def _fit_grid(self) -> Breakdown | None:
         """Go on with as many nodes as the spectrum asks for."""

@@ -13,14 +13,27 @@ from typing import Final
 import numpy as np
 
 from cellcrawl._compile import kernel
+from cellcrawl.solvers.adaptive.drive import (
+    BEFORE,
+    END,
+    END_RATES,
+    FIRST_OF_FOUR,
+    GO_ON,
+    NOW,
+    PAUSED,
+    START,
+    START_RATES,
+    Rules,
+    after_step,
+    error_scales,
+    next_step,
+)
+from cellcrawl.solvers.adaptive.family import Family
+from cellcrawl.solvers.adaptive.scheme import Scheme, fourth_order_scheme
 from cellcrawl.solvers.adaptive.stage_rates import stage_rates
 from cellcrawl.solvers.adaptive.step_error import relative_size
 
-ORDER: Final = 4
-START, START_RATES, END, END_RATES = 2, 3, 4, 5  # rows of `states`
-BEFORE, NOW, FIRST_OF_FOUR = 6, 7, 8  # the last: rates of the last four stages
 _STAGE_TIMES: Final = 15  # where they begin in `finish`
-STATE_ROWS: Final = 12
 
 
 @kernel
@@ -82,3 +95,55 @@ def step(
     for j in range(4):
         add(h * finish[weight + j], states[FIRST_OF_FOUR + j], error)
     return True, relative_size(error, end, y.size, relief, contrast)
+
+
+@kernel
+def run(
+    target: float,
+    end: float,
+    most_steps: int,
+    rules: Rules,
+    scheme: Scheme,
+    control: np.ndarray,
+    counters: np.ndarray,
+    states: np.ndarray,
+    y: np.ndarray,
+    edges: np.ndarray,
+    mixed: np.ndarray,
+    work: np.ndarray,
+) -> int:
+    """Step until ``target`` is reached or something is for the caller to do; see `drive`."""
+    for _ in range(most_steps):
+        code, h, k = next_step(target, end, scheme, control, counters)
+        if code != GO_ON:
+            return code
+        relief, contrast = error_scales(h, rules, control)
+        rows = scheme.recurrence[scheme.first[k] :]
+        solved, size = step(
+            h,
+            scheme.degrees[k],
+            rows,
+            scheme.finish[k],
+            relief,
+            contrast,
+            states,
+            y,
+            edges,
+            mixed,
+            work,
+        )
+        code = after_step(h, solved, size, end, rules, control, counters, states, y, edges, work)
+        if code != GO_ON:
+            return code
+    return PAUSED
+
+
+FAMILY: Final = Family(
+    order=4,
+    power=1.0,
+    amplified=0.002,
+    tension_weight=6.0,
+    tolerance=lambda rtol: 10.0 * rtol * (rtol / 1e-4) ** 0.15,
+    scheme=fourth_order_scheme,
+    run=run,
+)
