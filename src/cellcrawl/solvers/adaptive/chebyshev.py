@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl._compile import kernel, woven_kernel
 from cellcrawl.solvers.adaptive.drive import (
     BEFORE,
     END,
@@ -70,7 +70,7 @@ def _recurrence(degree: int) -> np.ndarray:
     return rows
 
 
-@kernel
+@woven_kernel
 def step(
     h: float,
     degree: int,
@@ -146,7 +146,7 @@ def run(
 
 FAMILY: Final = Family(
     order=2,
-    power=2.0 / 3.0,  # the estimate is of third order,
+    power=2.0 / 3.0,  # the estimate is of third order
     amplified=0.05,
     tension_weight=1.0,
     tolerance=lambda rtol: (10.0 * rtol) ** 1.5,

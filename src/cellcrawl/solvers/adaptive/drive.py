@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl._compile import woven_kernel
 from cellcrawl.solvers.adaptive.rates import stiffness
 from cellcrawl.solvers.adaptive.resolution import (
     COARSEN,
@@ -78,7 +78,7 @@ class Rules(NamedTuple):
     most_nodes: int
 
 
-@kernel
+@woven_kernel
 def bounded_step(h: float, time: float, end: float, radius: float, limits: np.ndarray) -> float:
     """Return the step to try from ``time``: stable, not too long, and landing on ``end`` evenly."""
     h = min(h, LONGEST_STEP, limits[-1] / (_RADIUS_MARGIN * radius))
@@ -90,7 +90,7 @@ def bounded_step(h: float, time: float, end: float, radius: float, limits: np.nd
     return h
 
 
-@kernel
+@woven_kernel
 def next_step(
     target: float,
     end: float,
@@ -112,7 +112,7 @@ def next_step(
     return GO_ON, h, k
 
 
-@kernel
+@woven_kernel
 def error_scales(h: float, rules: Rules, control: np.ndarray) -> tuple[float, float]:
     """Return the weight of the tension's error, less if it decays, and the size of the waves."""
     relief = rules.tension_weight / (1.0 + h * control[TENSION_DECAY])
@@ -120,7 +120,7 @@ def error_scales(h: float, rules: Rules, control: np.ndarray) -> tuple[float, fl
     return relief, contrast
 
 
-@kernel
+@woven_kernel
 def after_step(
     h: float,
     solved: bool,

@@ -14,7 +14,8 @@ from cellcrawl.solvers.adaptive import drive as drive
 from cellcrawl.solvers.adaptive import state as layout
 from cellcrawl.solvers.adaptive.family import Family
 from cellcrawl.solvers.adaptive.frame import frame
-from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, stiffness
+from cellcrawl.solvers.adaptive.rates import WORK_ROWS, stiffness
+from cellcrawl.solvers.adaptive.stage_rates import stage_rates
 from cellcrawl.solvers.adaptive.staggered import HALO
 from cellcrawl.solvers.base import Breakdown, Frame, Solver
 from cellcrawl.starts.base import CellState
@@ -236,7 +237,9 @@ class AdaptiveSolver(Solver):
         current, trial = self._states[drive.CURRENT], self._states[drive.TRIAL]
         self._counters[drive.RATES] += 1
         stiffness(current, self._log_rate, edge, self._work)
-        if not rates(current, trial, self._log_rate, edge, self._work):
+        if not stage_rates(
+            0.0, current, trial, self._log_rate, edge[None], self._mixed, self._work
+        ):
             return False
         self._states[drive.CURRENT_RATES] = trial
         self._control[drive.RADIUS], self._control[drive.TENSION_DECAY] = stiffness(

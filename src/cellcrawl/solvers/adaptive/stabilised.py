@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl._compile import kernel, woven_kernel
 from cellcrawl.solvers.adaptive.drive import (
     BEFORE,
     END,
@@ -36,14 +36,14 @@ from cellcrawl.solvers.adaptive.step_error import relative_size
 _STAGE_TIMES: Final = 15  # where they begin in `finish`
 
 
-@kernel
+@woven_kernel
 def add(part: float, values: np.ndarray, out: np.ndarray) -> None:
     """Add ``part`` of ``values`` to ``out``."""
     for k in range(out.size):
         out[k] += part * values[k]
 
 
-@kernel
+@woven_kernel
 def step(
     h: float,
     degree: int,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl._compile import kernel, woven_kernel
 from cellcrawl.solvers.adaptive.rates import rates
 
 
-@kernel
+@woven_kernel
 def mix(values: np.ndarray, part: float, out: np.ndarray) -> np.ndarray:
     """Parameters at ``part`` of a step from their values at 0, 1/3, 2/3 and 1 of it (or one time).
 

@@ -6,14 +6,14 @@ import math
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl._compile import woven_kernel
 from cellcrawl.solvers.adaptive.rates import AREA, LENGTH, ORIGIN_X, ORIGIN_Y, TENSION
 from cellcrawl.solvers.adaptive.staggered import HALO, sum_of_squares
 
 _TENSION_SCALE = 100.0
 
 
-@kernel
+@woven_kernel
 def relative_size(
     error: np.ndarray, state: np.ndarray, nodes: int, relief: float, contrast: float
 ) -> float:
