@@ -79,8 +79,8 @@ _ITERATIONS = 4
 _MATRIX_LASTS = 40  # steps
 UNKNOWN_CONTRACTION: Final = 0.3
 HOPELESS: Final = 10.0  # a full grid that misses this many times what is allowed ends the run
-_LOOK_EVERY = 2  # steps between two looks at the resolution
-_COARSEN_EVERY = 10
+_LOOK_EVERY = 4  # steps between two looks at the resolution
+_COARSEN_EVERY = 20
 _LEAST_CONTRAST = 1e-7  # waves smaller than this are no longer followed to their own size
 _AMPLIFIED = 0.05  # part of a local error found in the error at t = 5 (measured)
 
