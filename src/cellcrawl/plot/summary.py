@@ -19,7 +19,7 @@ from cellcrawl.plot.time_series import draw_series
 
 _HEIGHT = 3.9
 # left, bottom, width, height of the panels in inches; room for two-line labels and long numbers
-_PATH = (0.05, 0.3, 2.62, 3.25)
+_PATH = (0.05, 0.3, 2.56, 3.25)
 _KYMOGRAPH = (3.46, 2.36, 2.92, 1.3)
 _SERIES = ((3.46, 1.375, 2.92, 0.87), (3.46, 0.39, 2.92, 0.87))
 _COLOURS = (6.53, 2.36, 0.08, 1.3)
