@@ -17,7 +17,6 @@ CANCELLED: Final = 130
 # Importing and compiling make many objects that all stay: looking for garbage among them as often
 # as Python does costs an eighth of a first start.
 _OBJECTS_BETWEEN_COLLECTIONS = 100_000
-_NEED_NO_DASK: Final = ("simulate", "resume", "plot", "movie", "info")
 
 # Commands live in modules of their own, imported only when they are asked for.
 _COMMANDS: Final[dict[str, tuple[str, str]]] = {
@@ -98,10 +97,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
     with what was computed kept.
     """
     gc.set_threshold(_OBJECTS_BETWEEN_COLLECTIONS, 20, 100)
-    words = sys.argv[1:] if arguments is None else arguments
-    if words and words[0] in _NEED_NO_DASK:
-        # where dask is installed xarray imports it to ask of each array whether it is dask's
-        sys.modules.setdefault("dask", None)  # type: ignore[arg-type]
     sys.exit(run(arguments))
 
 
