@@ -13,7 +13,9 @@ if TYPE_CHECKING:
     from cellcrawl import linear as linear
     from cellcrawl import modes as modes
     from cellcrawl import observables as observables
+    from cellcrawl import one_dimensional as one_dimensional
     from cellcrawl import plot as plot
+    from cellcrawl import sweeps as sweeps
     from cellcrawl.curve import Curve as Curve
     from cellcrawl.errors import CellcrawlError as CellcrawlError
     from cellcrawl.errors import InputError as InputError
@@ -66,7 +68,7 @@ _HOMES = {
     "simulate": "simulation",
     "sweep": "sweeps",
 }
-_MODULES = ("linear", "modes", "observables", "plot")
+_MODULES = ("linear", "modes", "observables", "one_dimensional", "plot", "sweeps")
 
 __all__ = [*_HOMES, *_MODULES, "__version__"]
 
