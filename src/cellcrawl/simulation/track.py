@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Mapping
 from typing import Any, ClassVar, NamedTuple
 
@@ -36,6 +37,7 @@ class Track(NamedTuple):
 
 
 _ARRAYS = Track._fields[:-1]
+_values = operator.attrgetter(*_ARRAYS)
 
 
 def track_of(run: xr.Dataset) -> Track:
@@ -54,7 +56,7 @@ class TrackRecorder:
         self._rows: list[tuple[float, ...]] = []
 
     def record(self, record: Instant) -> bool:
-        self._rows.append(tuple(getattr(record, name) for name in _ARRAYS))
+        self._rows.append(_values(record))
         return False
 
     def commit(self, checkpoint: Checkpoint, attributes: Mapping[str, Any]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from cellcrawl.curve import from_path
+from cellcrawl.curve import Curve, from_path
 from cellcrawl.curve.construct import polar_path
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import Parameters
@@ -92,15 +93,25 @@ class RandomPerturbation:
 
     def state(self, parameters: Parameters, nodes: int) -> CellState:
         """Return the first state on ``nodes`` nodes."""
-        draw = np.random.default_rng(self.seed).uniform(-1.0, 1.0, (self.modes, 4))
-        amplitudes = (self.amplitude * draw).tolist()
-        radius = {k: (a, b) for k, (a, b, _, _) in enumerate(amplitudes, start=1)}
-        bound = {k: (c, d) for k, (_, _, c, d) in enumerate(amplitudes, start=1)}
-        return perturbed_circle(parameters, nodes, radius, bound)
+        shape, waves = _random_shape(self.seed, self.amplitude, self.modes, nodes)
+        return CellState(shape, parameters.n_bar + waves, parameters.sigma_bar)
 
     def describe(self) -> dict[str, Any]:
         """Return this start as plain values for JSON."""
         return {"kind": "RandomPerturbation", **dataclasses.asdict(self)}
+
+
+@functools.lru_cache(maxsize=32)
+def _random_shape(seed: int, amplitude: float, modes: int, nodes: int) -> tuple[Curve, np.ndarray]:
+    """Return edge and waves of the bound fraction, the same at all parameters.
+
+    Kept, for a sweep asks for the same few many times.
+    """
+    draw = np.random.default_rng(seed).uniform(-1.0, 1.0, (modes, 4))
+    amplitudes = (amplitude * draw).tolist()
+    radius = {k: (a, b) for k, (a, b, _, _) in enumerate(amplitudes, start=1)}
+    bound = {k: (c, d) for k, (_, _, c, d) in enumerate(amplitudes, start=1)}
+    return _shape(nodes, radius, bound)
 
 
 def perturbed_circle(
@@ -111,11 +122,16 @@ def perturbed_circle(
     tension_change: float = 0.0,
 ) -> CellState:
     """Return the state of a circle with the given modes and the resting tension plus a change."""
+    curve, waves = _shape(nodes, radius, bound_fraction)
+    return CellState(curve, parameters.n_bar + waves, parameters.sigma_bar + tension_change)
+
+
+def _shape(nodes: int, radius: Modes, bound_fraction: Modes) -> tuple[Curve, np.ndarray]:
+    """Return the edge, and the waves of the bound fraction at its nodes."""
     highest = max([0, *radius, *bound_fraction])
     samples = 1 << max(12, math.ceil(math.log2(16 * highest + 1)))
     curve, angle = from_path(polar_path(lambda phi: 1.0 + _sum(radius, phi), samples), nodes)
-    bound = parameters.n_bar + _sum(bound_fraction, angle)
-    return CellState(curve, bound, parameters.sigma_bar + tension_change)
+    return curve, _sum(bound_fraction, angle)
 
 
 def need_nodes(nodes: int, highest: int) -> None:
