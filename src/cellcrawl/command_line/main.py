@@ -22,6 +22,7 @@ _COMMANDS: Final[dict[str, tuple[str, str]]] = {
     "plot": ("draw", "Draw a saved run."),
     "movie": ("draw", "Film a saved run."),
     "info": ("info", "Say what a file holds."),
+    "verify": ("verify", "Verify the package and the paper's claims."),
     "bench": ("bench", "Measure accuracy and speed on this machine."),
     "completion": ("completion", "Print the shell completion script."),
 }

@@ -1,0 +1,73 @@
+"""All checks by name, in the order in which they are told."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import partial
+from typing import Final
+
+from cellcrawl.errors import InputError, nearest_name
+from cellcrawl.verification import (
+    agreement,
+    geometry,
+    growth,
+    invariants,
+    orders,
+    restart,
+)
+from cellcrawl.verification.check import Check
+
+# A part of the paper, or of the package, that is not verified yet gets a module with functions that
+# yield results, and a line here.
+CHECKS: Final[tuple[Check, ...]] = (
+    Check("curves", "geometry", geometry.curves),
+    Check("frames", "geometry", geometry.frames),
+    *(
+        Check(f"kept-by-{solver}", "invariants", partial(invariants.of_runs, solver))
+        for solver in ("adaptive", "paper", "spline")
+    ),
+    Check("symmetries", "invariants", invariants.of_symmetry),
+    Check("orders-of-adaptive", "orders", orders.of_adaptive),
+    Check("orders-of-paper", "orders", orders.of_paper),
+    Check("orders-of-spline", "orders", orders.of_spline),
+    Check("growth-in-adaptive", "growth", growth.growth_in_adaptive),
+    Check("growth-in-paper", "growth", growth.growth_in_paper),
+    Check("deterministic-check", "agreement", agreement.with_reference),
+    Check("between-solvers", "agreement", agreement.between_solvers),
+    Check("resume", "restart", restart.of_solvers),
+)
+
+PARTS: Final[dict[str, str]] = {
+    "geometry": "Geometry: ellipses, whose measures are known",
+    "invariants": "Invariants: what no run may break",
+    "orders": "Orders of accuracy in space and time",
+    "growth": "Growth rates of the nonlinear solvers against linear theory",
+    "agreement": "Agreement between solvers, and with independent programs",
+    "restart": "Restart to the same bits",
+}
+
+
+def chosen(
+    only: Iterable[str], full: bool, checks: Sequence[Check] | None = None
+) -> tuple[Check, ...]:
+    """Return the checks that are asked for by their names or those of their parts.
+
+    A check that takes part in the long version only is taken if it is asked for by name.
+
+    Raises
+    ------
+    InputError
+        For a name that neither a part nor a check has.
+    """
+    known = CHECKS if checks is None else tuple(checks)
+    asked = [only] if isinstance(only, str) else list(only)
+    names = {check.name for check in known} | {check.part for check in known}
+    for name in asked:
+        if name not in names:
+            raise InputError(f"there is no check or part {name!r}: {nearest_name(name, names)}")
+    return tuple(
+        check
+        for check in known
+        if check.name in asked
+        or ((not asked or check.part in asked) and (full or not check.only_in_full))
+    )
