@@ -109,13 +109,13 @@ class Outcome:
 
 def at_most(what: str, found: float, limit: float, **rest: Any) -> Result:
     """Return the result that ``found`` is a number of at most ``limit``."""
-    holds = math.isfinite(found) and found <= limit
+    holds = bool(math.isfinite(found) and found <= limit)
     return Result(what, f"at most {limit:g}", f"{found:.2g}", holds, **_with(found, rest))
 
 
 def near(what: str, found: float, target: float, within: float, **rest: Any) -> Result:
     """Return the result that ``found`` is ``target`` within ``within``."""
-    holds = math.isfinite(found) and abs(found - target) <= within
+    holds = bool(math.isfinite(found) and abs(found - target) <= within)
     places = max(0, 1 - math.floor(math.log10(within)))
     expected = f"{target:.{places}f} within {within:g}"
     return Result(what, expected, f"{found:.{places}f}", holds, **_with(found, rest))

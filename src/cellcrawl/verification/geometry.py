@@ -9,10 +9,12 @@ from typing import Final
 import numpy as np
 
 from cellcrawl.curve import Curve, from_path
-from cellcrawl.parameters import Conditions, Parameters
+from cellcrawl.parameters import Parameters
 from cellcrawl.solvers import SOLVERS
 from cellcrawl.starts import CellState
 from cellcrawl.verification.check import Result, at_most
+from cellcrawl.verification.engines import frames, started
+from cellcrawl.verification.transformations import Given
 
 AXES: Final = ((1.0, 1.0), (2.0, 1.0), (1.0, 0.4), (3.0, 1.0))
 _SAMPLES: Final = 1024
@@ -56,12 +58,12 @@ def curve_errors(a: float, b: float, nodes: int = 512) -> dict[str, float]:
 
 def solver_errors(name: str, a: float, b: float, **options: float) -> dict[str, float]:
     """Return what a solver's first frame gets wrong of an ellipse it is given."""
+    p = Parameters(sigma_c=300.0)
     scheme = SOLVERS[name]
     nodes = scheme.checked_nodes(options.pop("nodes", None))
     curve, _ = ellipse(a, b, scheme.start_nodes(nodes, **options))
-    p = Parameters(sigma_c=300.0)
     state = CellState(curve.moved(_CENTER), np.full(curve.nodes, p.n_bar), p.sigma_bar)
-    frame = scheme(state, Conditions(p), nodes=nodes, **options).frame(0.0)
+    (frame,) = frames(started(name, p, Given(state), nodes=nodes, **options), [0.0])
     _, t = ellipse(a, b, nodes)
     exact = np.array([a * np.cos(t) + _CENTER[0], b * np.sin(t) + _CENTER[1]])
     centroid = math.hypot(frame.centroid_x - _CENTER[0], frame.centroid_y - _CENTER[1])
@@ -100,7 +102,7 @@ def curves(full: bool) -> Iterator[Result]:
         )
 
 
-def frames(full: bool) -> Iterator[Result]:
+def of_solvers(full: bool) -> Iterator[Result]:
     """Measure ellipses as each solver sees them."""
     for name, limit in _SOLVER_LIMITS.items():
         errors = solver_errors(name, 1.3, 0.8, **_SOLVER_OPTIONS.get(name, {}))

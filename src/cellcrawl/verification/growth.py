@@ -17,10 +17,10 @@ import numpy as np
 from cellcrawl.bench.cases import LAWS
 from cellcrawl.linear import growth_rates
 from cellcrawl.linear.eigenmodes import linear_mode
-from cellcrawl.parameters import Conditions, Parameters
-from cellcrawl.solvers import SOLVERS
+from cellcrawl.parameters import Parameters
 from cellcrawl.starts import Eigenmode
 from cellcrawl.verification.check import Result, at_most, near
+from cellcrawl.verification.engines import frames, started
 from cellcrawl.verification.modal import modal_amplitudes
 
 WAVENUMBERS: Final = tuple(range(21))
@@ -149,17 +149,8 @@ def _run(
     times: np.ndarray,
     options: dict[str, Any],
 ) -> np.ndarray:
-    scheme = SOLVERS[solver]
-    nodes = scheme.checked_nodes(options.get("nodes"))
-    state = start.state(parameters, scheme.start_nodes(nodes, **_without_nodes(options)))
-    engine = scheme(state, Conditions(parameters), **{**options, "nodes": nodes})
-    found = []
-    for time in (0.0, *times):
-        broken = engine.advance(float(time))
-        if broken is not None:
-            raise RuntimeError(f"k = {k}: {broken.message}")
-        found.append(modal_amplitudes(engine.frame(float(time)), k, parameters.n_bar))
-    return np.array(found)
+    made = frames(started(solver, parameters, start, **options), (0.0, *times))
+    return np.array([modal_amplitudes(frame, k, parameters.n_bar) for frame in made])
 
 
 class Convergence(NamedTuple):
@@ -249,7 +240,3 @@ def growth_in_paper(full: bool) -> Iterator[Result]:
                 1e-3,
                 note=f"{len(roots)} roots; worst k = {worst.k}",
             )
-
-
-def _without_nodes(options: dict[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in options.items() if name != "nodes"}

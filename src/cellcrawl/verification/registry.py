@@ -9,6 +9,11 @@ from typing import Final
 from cellcrawl.errors import InputError, nearest_name
 from cellcrawl.verification import (
     agreement,
+    claims_linear,
+    claims_modes,
+    claims_onset,
+    claims_robustness,
+    claims_trends,
     geometry,
     growth,
     invariants,
@@ -21,7 +26,7 @@ from cellcrawl.verification.check import Check
 # yield results, and a line here.
 CHECKS: Final[tuple[Check, ...]] = (
     Check("curves", "geometry", geometry.curves),
-    Check("frames", "geometry", geometry.frames),
+    Check("frames", "geometry", geometry.of_solvers),
     *(
         Check(f"kept-by-{solver}", "invariants", partial(invariants.of_runs, solver))
         for solver in ("adaptive", "paper", "spline")
@@ -35,6 +40,22 @@ CHECKS: Final[tuple[Check, ...]] = (
     Check("deterministic-check", "agreement", agreement.with_reference),
     Check("between-solvers", "agreement", agreement.between_solvers),
     Check("resume", "restart", restart.of_solvers),
+    Check("breathing", "claims-linear", claims_linear.breathing),
+    Check("translation", "claims-linear", claims_linear.translation),
+    Check("dispersion", "claims-linear", claims_linear.dispersion),
+    Check("dependence", "claims-linear", claims_linear.dependence),
+    Check("mechanism", "claims-linear", claims_linear.mechanism),
+    Check("short-times", "claims-onset", claims_onset.linear_stage),
+    Check("noise", "claims-onset", claims_onset.noise),
+    Check("front-and-rear", "claims-onset", claims_onset.front_and_rear),
+    Check("rest-or-motion", "claims-onset", claims_onset.rest_or_motion),
+    Check("gliding", "claims-modes", claims_modes.gliding),
+    Check("turning", "claims-modes", claims_modes.turning),
+    Check("shapes", "claims-modes", claims_modes.shapes),
+    Check("irregular", "claims-modes", claims_modes.irregular),
+    Check("transitions", "claims-robustness", claims_robustness.transitions),
+    Check("starts", "claims-robustness", claims_robustness.starts),
+    Check("trends", "claims-trends", claims_trends.trends),
 )
 
 PARTS: Final[dict[str, str]] = {
@@ -44,6 +65,11 @@ PARTS: Final[dict[str, str]] = {
     "growth": "Growth rates of the nonlinear solvers against linear theory",
     "agreement": "Agreement between solvers, and with independent programs",
     "restart": "Restart to the same bits",
+    "claims-linear": "Claims of the paper: linear stability",
+    "claims-onset": "Claims of the paper: how a round cell sets off",
+    "claims-modes": "Claims of the paper: gliding and turning cells",
+    "claims-robustness": "Claims of the paper: starts and transitions",
+    "claims-trends": "Claims of the paper: trends with the adhesion parameters",
 }
 
 

@@ -1,0 +1,371 @@
+"""The paper's claims about the resting circle: its section on linear stability, and Fig. 2."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any, Final
+
+import numpy as np
+
+from cellcrawl.errors import InputError
+from cellcrawl.linear import (
+    base_state,
+    cutoff_wavenumber,
+    growth_rates,
+    hopf_points,
+    oscillation_onset,
+    unstable_modes,
+)
+from cellcrawl.linear.characteristic import characteristic
+from cellcrawl.parameters import DESCRIPTIONS, Parameters
+from cellcrawl.verification.check import Result
+from cellcrawl.verification.claims import DISCUSSION, EQUATIONS, STABILITY, claim, count, spread
+
+FIGURE: Final = Parameters(r_on=20, zeta_1=600, D=0.01)
+"""The cell that the families of Fig. 2 start from."""
+
+_PLANE: Final[dict[str, Any]] = {
+    "r_on": np.linspace(10.0, 60.0, 51)[:, None],
+    "zeta_1": np.linspace(400.0, 600.0, 41),
+}
+_ON_RATES: Final = np.linspace(1.0, 200.0, 400)
+_DRAWS: Final = 20_000
+
+
+def any_parameters() -> dict[str, np.ndarray]:
+    """Return parameters drawn from the whole range the package supports, always the same."""
+    draw = np.random.default_rng(0)
+    return {name: draw.uniform(d.low, d.high, _DRAWS) for name, d in DESCRIPTIONS.items()}
+
+
+def breathing(full: bool) -> Iterator[Result]:
+    """Measure the claims about k = 0."""
+    for law in ("consistent", "printed"):
+        growth = [
+            growth_rates(Parameters(elasticity=law, D=D), 0, **_PLANE)[..., 0].real
+            for D in (0.01, 0.05, 0.1)
+        ]
+        share = float(np.mean([g > 0.0 for g in growth]))
+        highest = float(np.max(growth))
+        at = growth_rates(Parameters(elasticity=law), 0)[0]
+        yield claim(
+            f"the breathing mode k = 0 decays at physiological stiffness ({law} tension law)",
+            f"{STABILITY}, Fig. 2",
+            "decays at all of r_on = 10 to 60, zeta_1 = 400 to 600, D = 0.01 to 0.1",
+            f"grows at {100 * share:.0f} % of them, at a rate of up to {highest:.3g}",
+            share == 0.0,
+            unless="the law as printed lacks a factor 1/epsilon, and its membrane is too soft to "
+            f"hold the breathing mode: {at.real:.2f} ± {abs(at.imag):.1f}i at (25, 600). The "
+            "paper's k = 0 theory is that of the consistent law"
+            if law == "printed"
+            else "",
+            highest=highest,
+        )
+    stiffness = {
+        law: growth_rates(
+            Parameters(elasticity=law), [0, 1, 2, 8, 15], k_sigma=10.0 ** _column(2, 5)
+        )
+        for law in ("printed", "consistent")
+    }
+    others = max(float(np.abs(np.ptp(g[:, 1:], axis=0)).max()) for g in stiffness.values())
+    breath = min(float(np.abs(np.ptp(g[:, 0], axis=0)).max()) for g in stiffness.values())
+    yield claim(
+        "only k = 0 feels the stiffness of the membrane",
+        STABILITY,
+        "rates of k = 1, 2, 8, 15 the same for k_sigma = 100 to 100,000; those of k = 0 not",
+        f"they change by {others:.1g}, and by {breath:.2g} at k = 0",
+        others < 1e-9 < breath,
+    )
+
+
+def _column(low: float, high: float) -> np.ndarray:
+    return np.linspace(low, high, 7)[:, None]
+
+
+def translation(full: bool) -> Iterator[Result]:
+    """Measure the claims about k = 1."""
+    values = any_parameters()
+    growth = growth_rates(Parameters(), np.arange(61)[:, None], **values)
+    frequency = float(np.abs(growth[1].imag).max())
+    yield claim(
+        "the growth rate of k = 1 is real whatever the parameters",
+        STABILITY,
+        f"frequency 0 for {_DRAWS:,} parameter sets of the whole range",
+        f"largest frequency {frequency:.2g}",
+        frequency == 0.0,
+    )
+    tense = characteristic(Parameters(), 2, values).stiffness > 0.0
+    first = growth[..., 0].real
+    grows = first[1] > 1e-9
+    fastest = first.argmax(axis=0) == 1
+    yield claim(
+        "k = 1 is the fastest mode wherever it grows",
+        f"{STABILITY}; {DISCUSSION}",
+        "k = 1 ahead of k = 0 and 2 to 60 at every unstable set with the circle under tension",
+        f"{count(fastest[grows & tense])} sets",
+        np.all(fastest[grows & tense]),
+        note="the circle is under tension unless contraction exceeds its friction; then the "
+        "shortest waves grow fastest",
+    )
+    alone = first[2:].max(axis=0) > 1e-9
+    yield claim(
+        "no other mode of shape grows unless k = 1 does",
+        STABILITY,
+        "none of k = 2 to 60 grows where k = 1 does not, the circle under tension",
+        f"{int(np.sum(alone & tense & ~grows))} of {int(np.sum(tense & ~grows))} sets",
+        not np.any(alone & tense & ~grows),
+    )
+    shapes = {k: _first_order_shape(k) for k in (1, 2, 3, 5, 8)}
+    yield claim(
+        "k = 1 is the only mode that moves the centre of mass",
+        STABILITY,
+        "shift of the centroid over amplitude: 1 for k = 1, 0 for others",
+        ", ".join(f"k = {k}: {abs(shift):.2g}" for k, (shift, _) in shapes.items()),
+        abs(shapes[1][0] - 1.0) < 1e-3 and all(shapes[k][0] < 1e-3 for k in shapes if k > 1),
+    )
+    without = [k for k, (_, asymmetry) in shapes.items() if asymmetry > 0.5]
+    yield claim(
+        "k = 1 is the only mode that lacks a centre of symmetry",
+        STABILITY,
+        "edges of k = 2, 3, 5, 8 are mapped on themselves by half a turn",
+        f"not so for k = {', '.join(map(str, without))}",
+        without == [1],
+        unless="half a turn takes every odd wave to its negative: a three- or five-sided cell has "
+        "no centre of symmetry either. What sets k = 1 apart is that it moves the centre of mass",
+    )
+
+
+def _first_order_shape(k: int) -> tuple[float, float]:
+    """Return the shift of the centroid and the oddness under half a turn, over the amplitude."""
+    size, phi = 1e-3, 2.0 * math.pi * np.arange(720) / 720
+    radius = 1.0 + size * np.cos(k * phi)
+    area = 0.5 * np.mean(radius**2)
+    shift = abs(np.mean(radius**3 * np.exp(1j * phi))) / (3.0 * area)
+    odd = 0.5 * np.abs(radius - np.roll(radius, 360)).max()
+    return float(shift / size), float(odd / size)
+
+
+def dispersion(full: bool) -> Iterator[Result]:
+    """Measure the claims about how rates depend on the wavenumber."""
+    families = _families()
+    low = [np.all((g := growth_rates(p, 2)).imag == 0.0) and np.all(g.real > 0) for p in families]
+    yield claim(
+        "low wavenumbers have two real positive rates",
+        f"{STABILITY}, Fig. 2",
+        f"so at k = 2 in the {len(families)} unstable cells of the families",
+        count(low),
+        all(low),
+    )
+    onsets = [oscillation_onset(p, k=(1.0, 100.0)) for p in families]
+    yield claim(
+        "towards higher k the two rates become a complex pair, so that waves travel round the edge",
+        f"{STABILITY}, Fig. 2",
+        "the pair appears at a k between 2 and the highest that grows, in every family",
+        f"first at k = {spread((found[0].value for found in onsets), '.1f')}",
+        all(
+            found and 2.0 < found[0].value < float(cutoff_wavenumber(p))
+            for found, p in zip(onsets, families, strict=True)
+        ),
+        note="the paper calls this a Hopf bifurcation; no mode gains or loses stability there",
+    )
+    crossings = [hopf_points(p, k=(1.0, 100.0)) for p in families]
+    yield claim(
+        "beyond some wavenumber all modes decay",
+        STABILITY,
+        "one crossing of the axis, and no growth from there to k = 1000",
+        f"highest k that grows: {spread((unstable_modes(p).max() for p in families), '.0f')}",
+        all(
+            len(found) == 1 and growth_rates(p, _beyond(p))[:, 0].real.max() < 0.0
+            for found, p in zip(crossings, families, strict=True)
+        ),
+    )
+    ratios = [_amplitude_ratios(FIGURE, k) for k in (3, 15)]
+    yield claim(
+        "a wavenumber has two independent perturbations, whose amplitude ratios are complex "
+        "conjugates",
+        STABILITY,
+        "conjugate ratios of off-rate to radius, at k = 3 and k = 15",
+        "; ".join(f"{a:.4g} and {b:.4g}" for a, b in ratios),
+        all(a.imag != 0.0 and abs(a - b.conjugate()) < 1e-9 * abs(a) for a, b in ratios),
+        unless="there are two, but they are conjugate only where the rates are a complex pair; at "
+        "low k both are real",
+    )
+
+
+def _families() -> list[Parameters]:
+    """Return the unstable cells of the families of Fig. 2, with values of our own choice."""
+    varied = {
+        "zeta_1": (500.0, 550.0, 600.0),
+        "r_on": (15.0, 20.0, 30.0, 45.0),
+        "D": (0.001, 0.01, 0.05, 0.1),
+        "sigma_c": (0.0, 100.0, 200.0),
+    }
+    cells = [FIGURE.replace(**{name: value}) for name, values in varied.items() for value in values]
+    return [p for p in cells if growth_rates(p, 2)[0].real > 0.0]
+
+
+def _beyond(p: Parameters) -> np.ndarray:
+    return np.arange(int(unstable_modes(p).max()) + 1, 1001)
+
+
+def _amplitude_ratios(p: Parameters, k: int) -> tuple[complex, complex]:
+    """Return off-rate over radius of both modes: ``lam R = -epsilon c r``."""
+    a, b = (-growth_rates(p, k) / (p.epsilon * base_state(p).c)).tolist()
+    return complex(a), complex(b)
+
+
+def dependence(full: bool) -> Iterator[Result]:
+    """Measure the claims about how rates depend on the parameters, Fig. 2 A-D."""
+    strengths = np.linspace(500.0, 640.0, 29)
+    larger = growth_rates(FIGURE, np.arange(1, 8)[:, None], zeta_1=strengths)[..., 0].real
+    modes = [_highest(FIGURE.replace(zeta_1=float(zeta_1))) for zeta_1 in strengths]
+    rising = bool(np.all(np.diff(larger, axis=1) > 0.0))
+    yield claim(
+        "stronger adhesion makes modes grow faster, and more of them grow",
+        f"{STABILITY}, Fig. 2A",
+        "larger rate of k = 1 to 7, and highest growing k, rise with zeta_1 = 500 to 640",
+        f"{'all rise' if rising else 'not all rise'}; highest k {modes[0]} to {modes[-1]}",
+        rising and bool(np.all(np.diff(modes) >= 0)) and modes[-1] > modes[0],
+        note="the smaller of two positive rates falls: their product hardly changes",
+    )
+    rate = _nontrivial(FIGURE, r_on=_ON_RATES)
+    peak = int(rate.argmax())
+    cutoffs = np.nan_to_num(cutoff_wavenumber(FIGURE, r_on=_ON_RATES))
+    yield claim(
+        "with the on-rate, growth first rises, then falls",
+        f"{STABILITY}, Fig. 2B",
+        "one maximum of the rate of k = 1, and of the highest growing k, over r_on = 1 to 200",
+        f"at r_on = {_ON_RATES[peak]:.0f} and {_ON_RATES[cutoffs.argmax()]:.0f}",
+        _one_peak(rate) and _one_peak(cutoffs),
+    )
+    yield claim(
+        "the circle is stable for very small and very large on-rates",
+        STABILITY,
+        "k = 1 decays at r_on = 1 and 200 with zeta_1 = 600, and grows between",
+        f"{rate[0]:.3g}, {rate.max():.3g}, {rate[-1]:.3g}",
+        rate[0] < 0.0 < rate.max() and rate[-1] < 0.0,
+    )
+    threshold = _threshold()
+    yield claim(
+        "adhesion must be strong enough for any instability",
+        f"{STABILITY}; {DISCUSSION}",
+        "below some zeta_1 k = 1 decays at every on-rate, above it does not",
+        f"the least zeta_1 is {threshold:.0f}",
+        _nontrivial(FIGURE, r_on=_ON_RATES, zeta_1=threshold - 5.0).max() < 0.0
+        and _nontrivial(FIGURE, r_on=_ON_RATES, zeta_1=threshold + 5.0).max() > 0.0,
+    )
+    diffusion = np.linspace(0.01, 0.1, 10)
+    damped = growth_rates(FIGURE, np.array([1, 5, 10, 15])[:, None], D=diffusion)[..., 0].real
+    change = damped[:, 0] - damped[:, -1]
+    yield claim(
+        "diffusion damps the higher modes",
+        f"{STABILITY}, Fig. 2C",
+        "rates of k = 5, 10 and 15 fall with D = 0.01 to 0.1, that of k = 1 by less than 2 %",
+        f"over that range k = 1 by {change[0]:.2g}, k = 5, 10 and 15 by {change[1]:.2g}, "
+        f"{change[2]:.2g} and {change[3]:.2g}",
+        np.all(np.diff(damped[1:], axis=1) < 0.0) and change[0] < 0.02 * damped[0, 0],
+    )
+    contraction = np.linspace(0.0, 200.0, 9)
+    pulled = growth_rates(FIGURE, np.array([1, 2, 5, 10, 15])[:, None], sigma_c=contraction)
+    growth = pulled[..., 0].real
+    gain = growth[:, -1] / growth[:, 0] - 1.0
+    yield claim(
+        "contraction destabilises, weakly",
+        f"{STABILITY}, Fig. 2D",
+        "rates of k = 2 to 15 rise, by less than 5 % from sigma_c = 0 to 200",
+        f"by {100 * gain[1:].min():.1f} to {100 * gain[1:].max():.1f} %; k = 1 by "
+        f"{100 * abs(gain[0]):.2g} %",
+        np.all(np.diff(growth[1:], axis=1) > 0.0) and gain[1:].max() < 0.05,
+        note="k = 1, the fastest, does not feel it",
+    )
+    born = {
+        name: oscillation_onset(FIGURE, k=8, **{name: limits})
+        for name, limits in (("zeta_1", (300.0, 1200.0)), ("r_on", (1.0, 200.0)))
+    }
+    yield claim(
+        "high modes pass from real to complex rates as parameters vary",
+        STABILITY,
+        "k = 8 does so along zeta_1 and along r_on",
+        ", ".join(f"{name} = {found[0].value:.1f}" for name, found in born.items() if found),
+        all(born.values()),
+    )
+
+
+def mechanism(full: bool) -> Iterator[Result]:
+    """Measure the claims about the biphasic friction and the feedback."""
+    p = FIGURE
+    r = np.linspace(1.0, 400.0, 40_000)
+
+    def friction(zeta_1: float) -> np.ndarray:
+        return np.asarray((r + zeta_1 * p.r_on / (p.r_on + r)) * np.log(r))
+
+    weak, strong = (bool(np.any(np.diff(friction(z)) < 0.0)) for z in (200.0, 600.0))
+    yield claim(
+        "friction first rises, then falls with the retrograde flow, if adhesion is strong enough",
+        f"{EQUATIONS}; {STABILITY}",
+        "in steady binding at r_on = 20, a falling stretch with zeta_1 = 600, none with 200",
+        f"{'a' if strong else 'no'} falling stretch, {'a' if weak else 'none'}",
+        strong and not weak,
+    )
+    slope = np.gradient((r + 600.0 * p.r_on / (p.r_on + r)) * np.log(r), r)
+    falls = float(np.interp(p.r_p, r, slope)) < 0.0
+    grows = bool(_nontrivial(p, D=0.001) > 0.0)
+    yield claim(
+        "the instability is that of stick and slip: on the falling stretch the circle is unstable",
+        f"{STABILITY}; {DISCUSSION}",
+        "k = 1 grows (D = 0.001) just where friction falls at r = r_p, over the plane of Fig. 4",
+        count(_falling(p, _PLANE) == (_nontrivial(p, D=0.001, **_PLANE) > 0.0)),
+        falls == grows
+        and float(np.mean(_falling(p, _PLANE) == (_nontrivial(p, D=0.001, **_PLANE) > 0.0)))
+        > 0.999,
+    )
+    base = base_state(p)
+    by_linkers = -p.zeta_1 * math.log(p.r_p) / base.a
+    by_tension = (1.0 + p.h) / base.a
+    yield claim(
+        "fewer bound linkers speed unbinding up, less tension slows it down",
+        f"{DISCUSSION}, Fig. 8",
+        "off-rate falls with n, rises with sigma, at the resting circle",
+        f"dr/dn = {by_linkers:.3g}, dr/dsigma = {by_tension:.2g}",
+        by_linkers < 0.0 < by_tension,
+    )
+
+
+def _falling(p: Parameters, values: dict[str, Any]) -> np.ndarray:
+    """Whether friction in steady binding falls with the off-rate at ``r_p``."""
+    r_on, zeta_1, log_r = values["r_on"], values["zeta_1"], math.log(p.r_p)
+    n = r_on / (r_on + p.r_p)
+    slope = 1.0 + log_r + zeta_1 * n / p.r_p - zeta_1 * n * log_r / (r_on + p.r_p)
+    return np.asarray(slope < 0.0)
+
+
+def _nontrivial(p: Parameters, **values: Any) -> np.ndarray:
+    """Return the rate of k = 1 that is not the shift's 0."""
+    found = characteristic(p, 1, values)
+    return np.asarray(-found.damping / found.a)
+
+
+def _highest(p: Parameters) -> int:
+    try:
+        return int(unstable_modes(p).max(initial=0))
+    except InputError:
+        return 10**6
+
+
+def _one_peak(values: np.ndarray) -> bool:
+    peak = int(values.argmax())
+    rises, falls = np.diff(values[: peak + 1]), np.diff(values[peak:])
+    return bool(0 < peak < values.size - 1 and np.all(rises >= 0.0) and np.all(falls <= 0.0))
+
+
+def _threshold() -> float:
+    """Return the least adhesion strength with an instability at some on-rate, by bisection."""
+    low, high = 0.0, 2000.0
+    while high - low > 0.01:
+        middle = 0.5 * (low + high)
+        if _nontrivial(FIGURE, r_on=_ON_RATES, zeta_1=middle).max() > 0.0:
+            high = middle
+        else:
+            low = middle
+    return high
