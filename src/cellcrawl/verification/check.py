@@ -121,6 +121,13 @@ def near(what: str, found: float, target: float, within: float, **rest: Any) -> 
     return Result(what, expected, f"{found:.{places}f}", holds, **_with(found, rest))
 
 
+def complex_text(value: complex) -> str:
+    """Return a rate as text: ``-77``, ``4.65 + 15.5i``."""
+    if value.imag == 0.0:
+        return f"{value.real:.4g}"
+    return f"{value.real:.4g} {'+' if value.imag > 0.0 else '-'} {abs(value.imag):.4g}i"
+
+
 def _with(found: float, rest: dict[str, Any]) -> dict[str, Any]:
     note = {"found": float(found)}
     return {**rest, "values": {**note, **rest.get("values", {})}}

@@ -63,7 +63,7 @@ def spread(values: Any, form: str = ".3g") -> str:
     """Return the range of values, as text."""
     values = np.asarray(list(values), dtype=float)
     low, high = format(values.min(), form), format(values.max(), form)
-    return low if low == high else f"{low} to {high}"
+    return low if low == high else f"{low}...{high}"
 
 
 def swing(values: xr.DataArray) -> float:

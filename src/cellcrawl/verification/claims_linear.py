@@ -19,8 +19,15 @@ from cellcrawl.linear import (
 )
 from cellcrawl.linear.characteristic import characteristic
 from cellcrawl.parameters import DESCRIPTIONS, Parameters
-from cellcrawl.verification.check import Result
-from cellcrawl.verification.claims import DISCUSSION, EQUATIONS, STABILITY, claim, count, spread
+from cellcrawl.verification.check import Result, complex_text
+from cellcrawl.verification.claims import (
+    DISCUSSION,
+    EQUATIONS,
+    STABILITY,
+    claim,
+    count,
+    spread,
+)
 
 FIGURE: Final = Parameters(r_on=20, zeta_1=600, D=0.01)
 """The cell that the families of Fig. 2 start from."""
@@ -53,7 +60,7 @@ def breathing(full: bool) -> Iterator[Result]:
             f"the breathing mode k = 0 decays at physiological stiffness ({law} tension law)",
             f"{STABILITY}, Fig. 2",
             "decays at all of r_on = 10 to 60, zeta_1 = 400 to 600, D = 0.01 to 0.1",
-            f"grows at {100 * share:.0f} % of them, at a rate of up to {highest:.3g}",
+            f"grows at {100 * share:.0f} % of them; highest rate {highest:.3g}",
             share == 0.0,
             unless="the law as printed lacks a factor 1/epsilon, and its membrane is too soft to "
             f"hold the breathing mode: {at.real:.2f} ± {abs(at.imag):.1f}i at (25, 600). The "
@@ -186,7 +193,7 @@ def dispersion(full: bool) -> Iterator[Result]:
         "conjugates",
         STABILITY,
         "conjugate ratios of off-rate to radius, at k = 3 and k = 15",
-        "; ".join(f"{a:.4g} and {b:.4g}" for a, b in ratios),
+        "; ".join(f"{complex_text(a)} and {complex_text(b)}" for a, b in ratios),
         all(a.imag != 0.0 and abs(a - b.conjugate()) < 1e-9 * abs(a) for a, b in ratios),
         unless="there are two, but they are conjugate only where the rates are a complex pair; at "
         "low k both are real",

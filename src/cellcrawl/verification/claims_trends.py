@@ -77,7 +77,7 @@ def trends(full: bool) -> Iterator[Result]:
         "with the on-rate cells become rounder, whatever their mode",
         f"{TRENDS}A",
         "circularity rises along r_on = 16, 24, 32, 40, 48, 56 at zeta_1 = 560, 580, 600",
-        f"{spread(round_[:, 0], '.3f')} to {spread(round_[:, -1], '.4f')}, smallest rise "
+        f"from {spread(round_[:, 0], '.3f')} to {spread(round_[:, -1], '.4f')}; smallest rise "
         f"{np.diff(round_, axis=1).min():.2g}",
         np.all(np.diff(round_, axis=1) > 0.0),
         note=told,
@@ -86,7 +86,8 @@ def trends(full: bool) -> Iterator[Result]:
         "for the difference in bound linkers between front and rear gets smaller",
         TRENDS,
         "that difference falls along the same on-rates",
-        f"{spread(contrast[:, 0], '.2f')} to {spread(contrast[:, -1], '.2f')}",
+        f"from {spread(contrast[:, 0], '.2f')} at r_on = 16 to "
+        f"{spread(contrast[:, -1], '.2f')} at 56",
         np.all(np.diff(contrast, axis=1) < 0.0),
         note=told,
     )

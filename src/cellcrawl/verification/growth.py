@@ -19,7 +19,7 @@ from cellcrawl.linear import growth_rates
 from cellcrawl.linear.eigenmodes import linear_mode
 from cellcrawl.parameters import Parameters
 from cellcrawl.starts import Eigenmode
-from cellcrawl.verification.check import Result, at_most, near
+from cellcrawl.verification.check import Result, at_most, complex_text, near
 from cellcrawl.verification.engines import frames, started
 from cellcrawl.verification.modal import modal_amplitudes
 
@@ -209,15 +209,16 @@ def growth_in_adaptive(full: bool) -> Iterator[Result]:
                 worst.error,
                 1e-4,
                 note=f"{len(roots)} roots, {pairs} of them complex; worst k = {worst.k}, "
-                f"{worst.theory:.4g}",
+                f"{complex_text(worst.theory)}",
                 values={"roots": len(roots), "complex_roots": pairs, "worst_k": worst.k},
             )
 
 
 def growth_in_paper(full: bool) -> Iterator[Result]:
     """Measure the order in the step, and the limit, of the roots in the paper's scheme."""
-    wavenumbers = WAVENUMBERS if full else (0, 1, 2, 5, 8, 12, 20)
-    for point in POINTS[:3] if full else POINTS[:1]:
+    some = (0, 1, 2, 5, 8, 12, 20)
+    for point in POINTS[:2] if full else POINTS[:1]:
+        wavenumbers = WAVENUMBERS if full and point == POINTS[0] else some
         for law, dt in zip(LAWS, (2e-4, 1e-4), strict=True):
             p = Parameters(r_on=point[0], zeta_1=point[1], elasticity=law)
             roots = [root for k in wavenumbers for root in paper_convergence(p, k, dt)]

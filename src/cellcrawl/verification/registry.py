@@ -11,6 +11,7 @@ from cellcrawl.verification import (
     agreement,
     claims_linear,
     claims_modes,
+    claims_numerics,
     claims_onset,
     claims_robustness,
     claims_trends,
@@ -22,8 +23,8 @@ from cellcrawl.verification import (
 )
 from cellcrawl.verification.check import Check
 
-# A part of the paper, or of the package, that is not verified yet gets a module with functions that
-# yield results, and a line here.
+# What is not verified yet gets a module with functions that yield results, and lines here. Claims
+# about modes over the whole diagram and about its colours (Figs. 4A and 7) belong with the sweeps.
 CHECKS: Final[tuple[Check, ...]] = (
     Check("curves", "geometry", geometry.curves),
     Check("frames", "geometry", geometry.of_solvers),
@@ -45,7 +46,8 @@ CHECKS: Final[tuple[Check, ...]] = (
     Check("dispersion", "claims-linear", claims_linear.dispersion),
     Check("dependence", "claims-linear", claims_linear.dependence),
     Check("mechanism", "claims-linear", claims_linear.mechanism),
-    Check("short-times", "claims-onset", claims_onset.linear_stage),
+    Check("short-times", "claims-numerics", claims_numerics.short_times),
+    Check("schemes", "claims-numerics", claims_numerics.schemes),
     Check("noise", "claims-onset", claims_onset.noise),
     Check("front-and-rear", "claims-onset", claims_onset.front_and_rear),
     Check("rest-or-motion", "claims-onset", claims_onset.rest_or_motion),
@@ -66,6 +68,7 @@ PARTS: Final[dict[str, str]] = {
     "agreement": "Agreement between solvers, and with independent programs",
     "restart": "Restart to the same bits",
     "claims-linear": "Claims of the paper: linear stability",
+    "claims-numerics": "Claims of the paper: its numerics",
     "claims-onset": "Claims of the paper: how a round cell sets off",
     "claims-modes": "Claims of the paper: gliding and turning cells",
     "claims-robustness": "Claims of the paper: starts and transitions",
