@@ -81,15 +81,18 @@ def test_error_estimate_is_within_a_factor_of_thirty(law: cc.Parameters) -> None
 
 
 @pytest.mark.parametrize("rtol", [1e-5, 1e-7, 1e-10])
-def test_a_start_of_rounding_alone_is_taken_at_any_tolerance(rtol: float) -> None:
-    run = cc.simulate(ZIGZAG, 0.1, start=cc.PerturbedCircle(), rtol=rtol)
+@pytest.mark.parametrize("start", [cc.PerturbedCircle(), cc.Eigenmode(1, 1e-4, "-")])
+def test_a_start_of_hardly_more_than_rounding_is_taken_at_any_tolerance(
+    start: cc.PerturbedCircle | cc.Eigenmode, rtol: float
+) -> None:
+    run = cc.simulate(ZIGZAG, 0.1, start=start, rtol=rtol)
     assert run.attrs["status"] == "completed"
-    assert np.ptp(run["bound_fraction"].values) < 1e-9
+    assert np.ptp(run["bound_fraction"].values) < 1e-6
 
 
-def test_tenth_order_in_space_and_fourth_in_time() -> None:
-    assert orders.adaptive_order_in_space(ZIGZAG) == pytest.approx(10.0, abs=0.6)
-    assert orders.adaptive_order_in_time(ZIGZAG) == pytest.approx(4.0, abs=0.4)
+def test_tenth_order_in_space_and_at_least_fourth_in_time(law: cc.Parameters) -> None:
+    assert orders.adaptive_order_in_space(law) == pytest.approx(10.0, abs=0.6)
+    assert orders.adaptive_order_in_time(law) > 4.0
 
 
 def test_resting_circle_stays_a_circle_on_the_fewest_nodes(law: cc.Parameters) -> None:
@@ -150,7 +153,7 @@ def test_steps_do_not_depend_on_the_targets(law: cc.Parameters) -> None:
     for target in np.linspace(0.0, 2.0, 173):
         often.advance(target)
     assert once.time == often.time
-    assert np.array_equal(once.checkpoint()["states"], often.checkpoint()["states"])
+    assert np.array_equal(once.checkpoint()["differences"], often.checkpoint()["differences"])
 
 
 def test_frames_between_steps_are_as_accurate_as_steps(law: cc.Parameters) -> None:

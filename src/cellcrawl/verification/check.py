@@ -113,6 +113,12 @@ def at_most(what: str, found: float, limit: float, **rest: Any) -> Result:
     return Result(what, f"at most {limit:g}", f"{found:.2g}", holds, **_with(found, rest))
 
 
+def at_least(what: str, found: float, limit: float, **rest: Any) -> Result:
+    """Return the result that ``found`` is a number of at least ``limit``."""
+    holds = bool(math.isfinite(found) and found >= limit)
+    return Result(what, f"at least {limit:g}", f"{found:.3g}", holds, **_with(found, rest))
+
+
 def near(what: str, found: float, target: float, within: float, **rest: Any) -> Result:
     """Return the result that ``found`` is ``target`` within ``within``."""
     holds = bool(math.isfinite(found) and abs(found - target) <= within)

@@ -13,11 +13,11 @@ from cellcrawl.bench.cases import LAWS, check_start
 from cellcrawl.parameters import Conditions, Parameters
 from cellcrawl.solvers.adaptive import AdaptiveSolver
 from cellcrawl.solvers.adaptive import state as layout
-from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, stiffness
+from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, renew_rates
 from cellcrawl.solvers.adaptive.staggered import HALO
 from cellcrawl.verification import manufactured
 from cellcrawl.verification.agreement import CELL, disagreement, last, summary
-from cellcrawl.verification.check import Result, at_most, near
+from cellcrawl.verification.check import Result, at_least, at_most, near
 
 _FINEST: Final = 1024  # nodes on which the rates are as good as exact
 
@@ -62,7 +62,7 @@ def _rates(parameters: Parameters, nodes: int) -> np.ndarray:
     log_rate = np.full(nodes, math.log(parameters.r_p))
     local = conditions.edge(0.0, 2 * nodes)[:, 1::2]
     edge = np.vstack([local, np.full(nodes, parameters.tension_rate)])
-    stiffness(state, log_rate, edge, work)
+    renew_rates(log_rate, work)
     if not rates(state, out, log_rate, edge, work):
         raise RuntimeError("the check start has no off-rate somewhere")
     return out
@@ -70,7 +70,7 @@ def _rates(parameters: Parameters, nodes: int) -> np.ndarray:
 
 def adaptive_order_in_time(parameters: Parameters, nodes: int = 640) -> float:
     """Return the slope of error against steps at t = 1, on a grid that is held."""
-    tolerances = (1e-4, 1e-5, 1e-6, 1e-7)
+    tolerances = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
     true, _ = _held(parameters, 1e-10, nodes)
     found = [_held(parameters, rtol, nodes) for rtol in tolerances]
     errors = [disagreement(values, true) for values, _ in found]
@@ -135,15 +135,15 @@ def of_adaptive(full: bool) -> Iterator[Result]:
         10.0,
         0.6,
     )
-    yield near(
-        "order in time of the adaptive solver, error against steps, printed law",
-        adaptive_order_in_time(CELL),
-        4.0,
-        0.4,
-    )
     for law in LAWS:
         tolerances = (1e-3, 1e-4, 1e-5, 1e-6)
         p = CELL.replace(elasticity=law)
+        yield at_least(
+            f"order in time of the adaptive solver, error against steps on a held grid, {law}",
+            adaptive_order_in_time(p),
+            4.0,
+            note="its formulas are of order 1 to 5 and change on the way",
+        )
         errors, slope = error_against_tolerance(p, tolerances)
         yield near(
             f"slope of error against tolerance, adaptive solver, t = 5, {law}", slope, 1.0, 0.4

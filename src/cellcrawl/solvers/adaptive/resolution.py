@@ -37,9 +37,9 @@ _REFINE = 1.1  # least factor of a refinement
 _SCALE = 2.2
 _DOUBLE_DIFFERENCES = 5
 _FORMED = 0.1  # spread of the bound fraction along the edge of a formed cell
-_AMPLIFIED = 30.0  # care with the steps before (measured)
+_AMPLIFIED = 5.0  # care with the steps before (measured)
 _FLAT = 1e-6  # slopes below this are as good as none
-_ROUNDING = 3e-13  # waves this small are what rounding leaves of none
+_ROUNDING = 3e-13  # waves smaller than this are what rounding leaves of none
 _HALO = np.uint64(HALO)
 _1 = np.uint64(1)
 
@@ -95,13 +95,12 @@ def allowance(allowed: float, contrast: float) -> float:
 def spectrum(angle: np.ndarray, bound: np.ndarray) -> np.ndarray:
     """Size of every wave in the slopes of angle and bound fraction, shape (nodes // 2 + 1,).
 
-    ``angle`` is the tangent angle less its winding. The squares sum to the mean square. What
-    rounding leaves of a wave counts as none: on a nearly round edge it would be most of it.
+    ``angle`` is the tangent angle less its winding. The squares sum to the mean square.
     """
     k = np.arange(angle.size // 2 + 1)
     waves = np.abs(np.fft.rfft(np.stack([angle, bound]), axis=1)) / angle.size
-    sizes = np.hypot(waves[0], waves[1])
-    return np.asarray(k * np.where(sizes > _ROUNDING, sizes, 0.0) * math.sqrt(2.0))
+    waves[waves < _ROUNDING] = 0.0
+    return np.asarray(k * np.hypot(waves[0], waves[1]) * math.sqrt(2.0))
 
 
 def missed_on(waves: np.ndarray, nodes: int) -> float:
