@@ -10,6 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from cellcrawl.linear import growth_rates
+from cellcrawl.observables import speed
 from cellcrawl.parameters import Parameters
 from cellcrawl.simulation import simulate
 from cellcrawl.solvers import Frame
@@ -209,17 +210,14 @@ def rest_or_motion(full: bool) -> Iterator[Result]:
     speeds, growing = [], []
     for r_on, zeta_1 in points:
         p = Parameters(r_on=r_on, zeta_1=zeta_1)
-        run = simulate(p, 40.0, start=RandomPerturbation(1), save_every=10.0).isel(time=-1)
-        arms = np.array([run["x"] - run["centroid_x"], run["y"] - run["centroid_y"]])
-        outward = run["normal_velocity"].values
-        velocity = (arms * outward).mean(axis=1) * run["length"].item() / run["area"].item()
-        speeds.append(float(np.hypot(*velocity)))
+        run = simulate(p, 40.0, start=RandomPerturbation(1), save_every=10.0)
+        speeds.append(float(speed(run)[-1]))
         growing.append(bool(growth_rates(p, 1)[0].real > 1e-9))
-    moving = [speed > 1e-2 for speed in speeds]
+    moving = [pace > 1e-2 for pace in speeds]
     yield claim(
         "a round cell sets off by itself where k = 1 grows, and nowhere else",
         ONSET,
         f"speed at t = 40 above 0.01 just where k = 1 grows, at {len(points)} points",
-        ", ".join(f"{point}: {speed:.2g}" for point, speed in zip(points, speeds, strict=True)),
+        ", ".join(f"{point}: {pace:.2g}" for point, pace in zip(points, speeds, strict=True)),
         moving == growing,
     )
