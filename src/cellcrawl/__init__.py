@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from cellcrawl import linear as linear
     from cellcrawl import observables as observables
+    from cellcrawl import one_dimensional as one_dimensional
     from cellcrawl import plot as plot
     from cellcrawl.curve import Curve as Curve
     from cellcrawl.errors import CellcrawlError as CellcrawlError
@@ -53,7 +54,7 @@ _HOMES = {
     "resume": "simulation",
     "simulate": "simulation",
 }
-_MODULES = ("linear", "observables", "plot")
+_MODULES = ("linear", "observables", "one_dimensional", "plot")
 
 __all__ = [*_HOMES, *_MODULES, "__version__"]
 

@@ -69,7 +69,7 @@ def test_forces_balance_at_every_node(zigzag_parameters):
     assert invariants.force_residual(ds, p) < 1e-10
     friction = (r + p.zeta_1 * n) * np.log(r)
     assert np.abs(ds["friction"].values - friction).max() < 1e-10
-    speed = p.epsilon * (p.v_p - laws.retrograde_velocity.py_func(np.log(r), r))
+    speed = p.epsilon * (p.v_p - laws.retrograde_velocity(np.log(r), r))
     assert np.abs(ds["normal_velocity"].values - speed).max() < 1e-12
     assert r.min() >= 1.0
 

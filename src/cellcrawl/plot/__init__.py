@@ -9,20 +9,25 @@ every picture and movie.
 
 from cellcrawl.plot.cell import cell, snapshots
 from cellcrawl.plot.dispersion import dispersion
+from cellcrawl.plot.flat_edge import flat_edge
 from cellcrawl.plot.kymograph import kymograph, kymographs
 from cellcrawl.plot.path import path
 from cellcrawl.plot.stability import stability
 from cellcrawl.plot.summary import summary
 from cellcrawl.plot.time_series import time_series
+from cellcrawl.plot.two_edges import regimes, two_edges
 
 __all__ = [
     "cell",
     "dispersion",
+    "flat_edge",
     "kymograph",
     "kymographs",
     "path",
+    "regimes",
     "snapshots",
     "stability",
     "summary",
     "time_series",
+    "two_edges",
 ]
