@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from cellcrawl import linear as linear
+    from cellcrawl import modes as modes
     from cellcrawl import observables as observables
     from cellcrawl import one_dimensional as one_dimensional
     from cellcrawl import plot as plot
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from cellcrawl.errors import CellcrawlError as CellcrawlError
     from cellcrawl.errors import InputError as InputError
     from cellcrawl.errors import StorageError as StorageError
+    from cellcrawl.modes import classify as classify
+    from cellcrawl.modes import classify_track as classify_track
     from cellcrawl.movies import movie as movie
     from cellcrawl.parameters import Parameters as Parameters
     from cellcrawl.parameters import PhysicalParameters as PhysicalParameters
@@ -49,12 +52,14 @@ _HOMES = {
     "Scales": "parameters",
     "Schedule": "parameters",
     "StorageError": "errors",
+    "classify": "modes",
+    "classify_track": "modes",
     "movie": "movies",
     "open_run": "simulation",
     "resume": "simulation",
     "simulate": "simulation",
 }
-_MODULES = ("linear", "observables", "one_dimensional", "plot")
+_MODULES = ("linear", "modes", "observables", "one_dimensional", "plot")
 
 __all__ = [*_HOMES, *_MODULES, "__version__"]
 
