@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cellcrawl.observables import circularity, heading
+from cellcrawl.observables import circularity, heading, mean_distance
 from cellcrawl.verification.check import Result
 from cellcrawl.verification.claims import TRENDS, claim, crawl, spread
 
@@ -40,9 +40,6 @@ def average(point: tuple[int, int], seeds: int) -> Average:
         if run.attrs["status"] != "completed" or len(rows) == seeds:
             continue
         late = run.sel(time=slice(5.0, None))
-        away = np.hypot(
-            late["centroid_x"] - run["centroid_x"][0], late["centroid_y"] - run["centroid_y"][0]
-        )
         facing = np.cos(late["theta"].values - 0.5 * np.pi - heading(late).values[:, None])
         n = late["bound_fraction"].values
         contrast = n[facing > 0.7].mean() - n[facing < -0.7].mean()
@@ -50,7 +47,7 @@ def average(point: tuple[int, int], seeds: int) -> Average:
             [
                 float(circularity(late).mean()),
                 float(late["tension"].mean()),
-                float(away.mean()),
+                mean_distance(run, after=5.0),
                 contrast,
             ]
         )
