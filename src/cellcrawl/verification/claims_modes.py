@@ -86,7 +86,7 @@ def gliding(full: bool) -> Iterator[Result]:
     yield claim(
         "gliding cells are alike left and right, turning cells are not",
         MODES,
-        "largest difference of the bound fraction between the sides: gliding below 0.005, turning "
+        "largest difference of the bound fraction between the flanks: gliding below 0.005, turning "
         "above 0.02",
         f"{max(symmetric):.1g}, {min(turned):.2g}",
         max(symmetric) < 5e-3 and min(turned) > 0.02,
@@ -130,20 +130,24 @@ def turning(full: bool) -> Iterator[Result]:
         yield claim(
             f"before a turn linkers gather on the side the cell then turns to ({name})",
             TURNS,
-            f"bound fraction of that side above the other's, over 1 time unit before, {told}",
+            f"bound fraction of that flank above the other's, over 1 time unit before, {told}",
             f"by {spread(inside, '.3f')}",
             min(inside) > 0.0,
             unless="the difference is small there, and on the outer side; on the inner side "
             "linkers gather once the cell turns"
             if name == "rotational"
             else "",
+            note=""
+            if name == "rotational"
+            else "flanks are the quarters around sideways; whole halves of the edge differ by less "
+            "than a tenth of that, the other way",
         )
     run = settled(TURNING["zigzag"])
     tense, lateral = period(run, run["tension"].values), period(run, side_difference(run))
     yield claim(
         "strong adhesion changes sides with every turn of a zigzag, and the tension peaks at each",
         TURNS,
-        "period of the side difference twice that of the tension, within 2 %",
+        "period of the difference between the flanks twice that of the tension, within 2 %",
         f"{lateral:.2f} and {tense:.2f}",
         abs(lateral / tense - 2.0) < 0.04,
     )

@@ -21,7 +21,7 @@ class Turn(NamedTuple):
     way: int
     """1 to the left, -1 to the right."""
     prepared: float
-    """Bound fraction of the left less that of the right side, mean over the time before."""
+    """Bound fraction of the left less that of the right flank, mean over the time before."""
     tension_rises: bool
     """Whether the tension rises at the fastest turning."""
     tension_peak: float
@@ -29,10 +29,11 @@ class Turn(NamedTuple):
 
 
 def side_difference(dataset: xr.Dataset) -> np.ndarray:
-    """Return the bound fraction of the left half less that of the right, shape (time,).
+    """Return the bound fraction of the left flank less that of the right, shape (time,).
 
     Left and right of the heading, by the polar angle about the centroid, the quarters around
-    straight ahead and straight behind left out.
+    straight ahead and straight behind left out. `left_right_asymmetry` takes whole halves, in which
+    front and rear can outweigh the flanks.
     """
     arms = [
         dataset[axis].values - dataset[f"centroid_{axis}"].values[:, None] for axis in ("x", "y")
