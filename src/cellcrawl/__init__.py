@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from cellcrawl.errors import InputError as InputError
     from cellcrawl.errors import StorageError as StorageError
     from cellcrawl.movies import movie as movie
+    from cellcrawl.parameters import ActivationEnergies as ActivationEnergies
     from cellcrawl.parameters import Parameters as Parameters
     from cellcrawl.parameters import PhysicalParameters as PhysicalParameters
     from cellcrawl.parameters import Scales as Scales
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 
 # Where each public name lives; loaded on first use, so that `import cellcrawl` stays light.
 _HOMES = {
+    "ActivationEnergies": "parameters",
     "CellState": "starts",
     "CellcrawlError": "errors",
     "Curve": "curve",
