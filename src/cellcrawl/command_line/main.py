@@ -19,6 +19,7 @@ _COMMANDS: Final[dict[str, tuple[str, str]]] = {
     "resume": ("resume", "Go on with a saved run."),
     "dispersion": ("theory", "Growth rates of every wavenumber, as a table and a picture."),
     "stability": ("theory", "Which wavenumbers grow where, over two parameters."),
+    "reproduce": ("reproduce", "Make the figures and movies of the paper."),
     "plot": ("draw", "Draw a saved run."),
     "movie": ("draw", "Film a saved run."),
     "info": ("info", "Say what a file holds."),

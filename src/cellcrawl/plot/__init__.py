@@ -9,6 +9,7 @@ every picture and movie.
 
 from cellcrawl.plot.cell import cell, snapshots
 from cellcrawl.plot.dispersion import dispersion
+from cellcrawl.plot.growth import growth
 from cellcrawl.plot.kymograph import kymograph, kymographs
 from cellcrawl.plot.path import path
 from cellcrawl.plot.stability import stability
@@ -18,6 +19,7 @@ from cellcrawl.plot.time_series import time_series
 __all__ = [
     "cell",
     "dispersion",
+    "growth",
     "kymograph",
     "kymographs",
     "path",

@@ -12,12 +12,13 @@ from cellcrawl.observables.inputs import edge_field
 from cellcrawl.plot.edge import colour_bar, draw_cell, edge_points, frame, scale_bar
 from cellcrawl.plot.inputs import drawable, record_at
 from cellcrawl.plot.scales import Limits, norm_for
-from cellcrawl.plot.style import COLUMN, TRACK, axes_or_new
+from cellcrawl.plot.style import BODY, COLUMN, TRACK, axes_or_new
 from cellcrawl.validation import real_number
 
 _STEPS = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.5, 8.0, 10.0)
 _MARGIN = 0.2  # around the contours, in R_0
 _MOST = 1000
+_APART = 0.45  # in R_0: between two times that are written
 _NEAREST = 0.4  # of `every`: nearer contours than this are not added at the end
 
 
@@ -28,6 +29,7 @@ def path(
     field: str = "bound_fraction",
     limits: Limits | None = None,
     colorbar: bool = True,
+    times: bool = False,
     ax: Axes | None = None,
 ) -> Axes:
     """Draw cell contours along the path of the centroid, coloured by a field.
@@ -46,6 +48,8 @@ def path(
         Ends of the colour scale; the field's own unless given.
     colorbar : bool
         Add a colour bar.
+    times : bool
+        Write the time of each contour in it, unless that would cover the time before.
     ax : Axes, optional
         Where to draw; the only axes of a new figure unless given.
 
@@ -75,10 +79,24 @@ def path(
         frame(axes, low, high, _MARGIN)
         axes.plot(*track.T, color=TRACK, linewidth=0.9, zorder=3.0, solid_capstyle="round")
         axes.plot(*track[0], "o", color=TRACK, markersize=2.5, zorder=3.1)
+        last: np.ndarray | None = None
         for number, (outline, colours) in enumerate(zip(points, values, strict=True)):
             edge = draw_cell(
                 axes, outline, colours, field, norm, linewidth=1.5, zorder=2.0 + 1e-4 * number
             )
+            middle = outline.mean(axis=0)
+            if times and (last is None or np.hypot(*(middle - last)) > _APART):
+                last = middle
+                axes.text(
+                    float(middle[0]),
+                    float(middle[1]),
+                    f"{float(run['time'][records[number]]):.4g}",
+                    ha="center",
+                    va="center",
+                    fontsize="small",
+                    zorder=3.2,
+                    bbox={"facecolor": BODY, "edgecolor": "none", "alpha": 0.8, "pad": 0.6},
+                )
         scale_bar(axes)
         axes.annotate(
             _caption(run, step),

@@ -1,0 +1,39 @@
+"""Movies S1-S9, the nine named cells, and S10-S12, cells that change from mode to mode."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cellcrawl import observables
+from cellcrawl.reproduction.cells import LONG, NINE, TRANSITIONS
+from cellcrawl.reproduction.workplace import Workplace
+
+SAVE_EVERY = 0.2
+
+
+def make(workplace: Workplace, name: str) -> list[str]:
+    """Film one of them, ten seconds long."""
+    number = int(name.removeprefix("movie-s")) - 1
+    end = 0.1 * LONG if workplace.quick else LONG
+    if number < len(NINE):
+        run = workplace.run(NINE[number].parameters, end, save_every=SAVE_EVERY)
+    else:
+        change = TRANSITIONS[number - len(NINE)]
+        change = change._replace(time=change.time * end / LONG)
+        run = workplace.run(change.parameters, end, schedule=change.schedule, save_every=SAVE_EVERY)
+    options: dict[str, Any] = {"seconds": 1.0, "size": (320, 240)} if workplace.quick else {}
+    workplace.movie(run, **options)
+    centre = np.column_stack([run["centroid_x"].values, run["centroid_y"].values])
+    workplace.table(
+        "track",
+        {
+            "time": run["time"].values,
+            "x": centre[:, 0],
+            "y": centre[:, 1],
+            "tension": run["tension"].values,
+            "speed": observables.speed(run).values,
+        },
+    )
+    return [f"{run.attrs['status']} at t = {float(run['time'][-1]):g}"]
