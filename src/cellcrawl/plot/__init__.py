@@ -8,6 +8,7 @@ every picture and movie.
 """
 
 from cellcrawl.plot.cell import cell, snapshots
+from cellcrawl.plot.cycle import cycle
 from cellcrawl.plot.dispersion import dispersion
 from cellcrawl.plot.growth import growth
 from cellcrawl.plot.kymograph import kymograph, kymographs
@@ -18,6 +19,7 @@ from cellcrawl.plot.time_series import time_series
 
 __all__ = [
     "cell",
+    "cycle",
     "dispersion",
     "growth",
     "kymograph",

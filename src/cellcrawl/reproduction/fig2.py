@@ -43,7 +43,7 @@ def make(workplace: Workplace, name: str) -> list[str]:
             cells = [_CELL.replace(**{parameter: value}) for value in values]
             found.append(
                 f"rate of k = 1 and the first k that decays, by {parameter}: "
-                + ", ".join(
+                + "; ".join(
                     f"{value:g}: {linear.growth_rates(cell, 1)[0].real:.2f}, "
                     f"{_first_decaying(cell)}"
                     for value, cell in zip(values, cells, strict=True)
