@@ -11,12 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from cellcrawl import linear as linear
+    from cellcrawl import modes as modes
     from cellcrawl import observables as observables
     from cellcrawl import plot as plot
     from cellcrawl.curve import Curve as Curve
     from cellcrawl.errors import CellcrawlError as CellcrawlError
     from cellcrawl.errors import InputError as InputError
     from cellcrawl.errors import StorageError as StorageError
+    from cellcrawl.modes import classify as classify
+    from cellcrawl.modes import classify_track as classify_track
     from cellcrawl.movies import movie as movie
     from cellcrawl.parameters import ActivationEnergies as ActivationEnergies
     from cellcrawl.parameters import Parameters as Parameters
@@ -50,12 +53,14 @@ _HOMES = {
     "Scales": "parameters",
     "Schedule": "parameters",
     "StorageError": "errors",
+    "classify": "modes",
+    "classify_track": "modes",
     "movie": "movies",
     "open_run": "simulation",
     "resume": "simulation",
     "simulate": "simulation",
 }
-_MODULES = ("linear", "observables", "plot")
+_MODULES = ("linear", "modes", "observables", "plot")
 
 __all__ = [*_HOMES, *_MODULES, "__version__"]
 

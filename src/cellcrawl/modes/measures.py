@@ -1,0 +1,132 @@
+"""What the rule on turns looks at, measured on the heading after the transient."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from cellcrawl.modes.result import Measures
+from cellcrawl.observables.smoothing import SmoothTrack
+from cellcrawl.observables.track import Track
+from cellcrawl.observables.turns import Swings, swings_of
+
+SMALLEST_SWING = math.radians(20.0)
+"""Swings of the heading smaller than this are not turns."""
+_NOISE_RANGE = 6.0  # peak to peak of a heading that only has noise, over its standard deviation
+_FIRST_MOVES = 0.25  # of the time: a cell may come to rest, or move into place, meanwhile
+_ROUNDING = 1e-9
+_ONSET = 0.5  # the cell has begun to crawl at this fraction of its later median speed
+
+
+def onset(track: SmoothTrack) -> int:
+    """Return the first record at which the cell crawls at half its later median speed."""
+    later = float(np.median(track.speed[track.speed.size // 2 :]))
+    return int(np.argmax(track.speed >= _ONSET * later))
+
+
+def measure_rest(track: Track, noise: float) -> Measures:
+    """Measure whether a cell moves at all, after the first quarter of the time."""
+    after = int(np.searchsorted(track.t, track.t[0] + _FIRST_MOVES * track.duration))
+    places = np.stack([track.x, track.y])
+    late = places[:, after:]
+    whole, extent = (float(np.ptp(part, axis=1).max()) for part in (places, late))
+    # Positions far from the origin carry their rounding.
+    moves = extent > _ROUNDING * float(np.abs(places).max())
+    around = late - late.mean(axis=1, keepdims=True)
+    steps = np.diff(late, axis=1)
+    return Measures(
+        start=float(track.t[0]),
+        speed=0.0,
+        extent=extent,
+        late_extent=extent / whole if moves else 0.0,
+        disorder=float(np.mean(steps**2) / np.mean(around**2)) if moves else 2.0,
+        noise=noise,
+    )
+
+
+def measure(track: SmoothTrack, first: int) -> Measures:
+    """Measure turns from record ``first`` on."""
+    heading = track.heading[first:] - track.heading[first]
+    times = track.t[first:]
+    smallest = max(SMALLEST_SWING, _NOISE_RANGE * min(track.heading_error, 1.0))
+    swings = swings_of(heading, smallest)
+    inner = _complete(swings)
+    turned = float(heading[-1])
+    sizes = np.abs(inner.angle)
+    crossings = _crossing_times(times, heading, inner)
+    left, right = (_mean(sizes[inner.angle * sign > 0.0]) for sign in (1.0, -1.0))
+    path = float(np.sum(np.hypot(np.diff(track.x[first:]), np.diff(track.y[first:]))))
+    net = math.hypot(track.x[-1] - track.x[first], track.y[-1] - track.y[first])
+    against = np.abs(swings.angle[swings.angle * turned < 0.0])
+    rate = turned / (times[-1] - times[0])
+    return Measures(
+        start=float(times[0]),
+        turned=turned,
+        swings=int(swings.angle.size),
+        swing=_mean(sizes),
+        widest_swing=max(left, right),
+        one_sidedness=abs(left - right) / (left + right) if left + right > 0.0 else 0.0,
+        counter_turn=float(against.max()) if against.size else 0.0,
+        evenness=_evenness(heading),
+        angle_spread=_spread(sizes),
+        interval_spread=_spread(np.diff(crossings)),
+        wander=_wander(times, heading),
+        turning_rate=rate,
+        circling_radius=path / abs(turned) if turned else math.inf,
+        period=2.0 * _mean(np.diff(crossings)) if crossings.size > 1 else math.nan,
+        speed=float(np.median(track.speed[first:])),
+        straightness=net / path if path > 0.0 else 0.0,
+        noise=track.noise,
+        heading_error=track.heading_error,
+    )
+
+
+def _complete(swings: Swings) -> Swings:
+    """Leave out the first and the last swing if the ends of the track cut them off: if smaller."""
+    sizes = np.abs(swings.angle)
+    if sizes.size < 4:
+        return swings
+    inner = sizes[1:-1].mean()
+    kept = slice(int(sizes[0] < inner), sizes.size - int(sizes[-1] < inner))
+    return Swings(swings.start[kept], swings.end[kept], swings.angle[kept])
+
+
+def _crossing_times(times: np.ndarray, heading: np.ndarray, swings: Swings) -> np.ndarray:
+    """Return when the heading is halfway through each swing."""
+    found = np.empty(swings.angle.size)
+    for i, (start, end, angle) in enumerate(
+        zip(swings.start.tolist(), swings.end.tolist(), swings.angle.tolist(), strict=True)
+    ):
+        part = (heading[start : end + 1] - heading[start]) / angle
+        k = max(int(np.argmax(part >= 0.5)), 1)
+        before, after = part[k - 1], part[k]
+        share = (0.5 - before) / (after - before)
+        found[i] = times[start + k - 1] + share * (times[start + k] - times[start + k - 1])
+    return found
+
+
+def _mean(values: np.ndarray) -> float:
+    return float(values.mean()) if values.size else 0.0
+
+
+def _spread(values: np.ndarray) -> float:
+    if values.size < 2:
+        return 0.0
+    mean = float(values.mean())
+    return float(values.std(ddof=1)) / mean if mean > 0.0 else math.inf
+
+
+def _evenness(heading: np.ndarray) -> float:
+    """Return the smallest share of the net turn in a third of the time, over a third."""
+    at = np.linspace(0, heading.size - 1, 4).round().astype(int)
+    parts = np.diff(heading[at])
+    total = float(parts.sum())
+    return max(0.0, float((parts / total).min()) * 3.0) if total else 0.0
+
+
+def _wander(times: np.ndarray, heading: np.ndarray) -> float:
+    """Return the range of the heading around its least-squares line."""
+    when = times - times.mean()
+    slope = float(when @ heading) / float(when @ when)
+    return float(np.ptp(heading - slope * when))

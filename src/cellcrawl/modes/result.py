@@ -1,0 +1,114 @@
+"""What the classifier returns."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Any, Final
+
+MODES: Final = ("gliding", "rotational", "zigzag", "other", "stationary", "fragmented")
+"""Modes of a single run; a set of runs can also be "mixed"."""
+
+
+@dataclass(frozen=True)
+class Measures:
+    """What the rule looks at; angles in rad, times and lengths in the units of the track.
+
+    Attributes
+    ----------
+    start : float
+        Time at which the transient ends; all that follows is measured from there on.
+    turned : float
+        Net change of heading, positive to the left.
+    swings : int
+        How often the heading swings to one side and then the other.
+    swing : float
+        Mean size of a swing, without the two cut off at the ends when there are others.
+    widest_swing : float
+        The larger of the mean swings to the left and to the right.
+    one_sidedness : float
+        From 0, as much to the left as to the right, to 1, all to one side: of complete swings.
+    counter_turn : float
+        Largest swing against the net change of heading.
+    evenness : float
+        Smallest share of the net change of heading in a third of the time, over 1/3: 1 for a
+        circle, 0 when a third of the time has no turn.
+    angle_spread, interval_spread : float
+        Standard deviation over mean of the sizes of swings and of the times between them.
+    wander : float
+        Range of the heading around its straight line in time.
+    turning_rate : float
+        Net change of heading over time, positive to the left.
+    circling_radius : float
+        Path length over the net change of heading: the radius of the circle that turns as much.
+        Infinite without turning.
+    period : float
+        Time of a full left-right cycle, or of a turn of 2 pi for a rotating cell; NaN else.
+    speed : float
+        Median speed.
+    straightness : float
+        Net distance over path length.
+    extent : float
+        Largest extent along x or y after the first quarter of the time.
+    late_extent : float
+        The same over the extent of the whole track.
+    disorder : float
+        Mean square distance of successive positions over their variance, after the first quarter:
+        2 for positions without order, near 0 for a path.
+    noise : float
+        Estimated error of a recorded position.
+    heading_error : float
+        Expected error of the heading after smoothing.
+    """
+
+    start: float = math.nan
+    turned: float = math.nan
+    swings: int = 0
+    swing: float = math.nan
+    widest_swing: float = math.nan
+    one_sidedness: float = math.nan
+    counter_turn: float = math.nan
+    evenness: float = math.nan
+    angle_spread: float = math.nan
+    interval_spread: float = math.nan
+    wander: float = math.nan
+    turning_rate: float = math.nan
+    circling_radius: float = math.nan
+    period: float = math.nan
+    speed: float = math.nan
+    straightness: float = math.nan
+    extent: float = math.nan
+    late_extent: float = math.nan
+    disorder: float = math.nan
+    noise: float = math.nan
+    heading_error: float = math.nan
+
+
+@dataclass(frozen=True)
+class Classification:
+    """The mode of one run, and how sure.
+
+    Attributes
+    ----------
+    mode : str
+        One of `MODES`.
+    confidence : float
+        From 0 to 1; below about 0.7 a second look is due. It is how far the measures are from
+        the rule's thresholds, not a probability.
+    memberships : dict
+        How well gliding, rotational and zigzag each fit, from 0 to 1.
+    measures : Measures
+        What the rule looked at.
+    reason : str
+        The deciding measure, in words.
+    """
+
+    mode: str
+    confidence: float
+    memberships: dict[str, float]
+    measures: Measures
+    reason: str
+
+    def as_row(self) -> dict[str, Any]:
+        """Return mode, confidence and measures as one flat row of a table."""
+        return {"mode": self.mode, "confidence": self.confidence, **asdict(self.measures)}
