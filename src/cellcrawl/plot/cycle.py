@@ -125,7 +125,7 @@ def _draw(
         draw_velocity(below, centre + place, velocity[number], _ARROW)
     below.set_xlim(0.0, len(outlines) * (size + _GAP))
     below.set_ylim(-0.5 * size - 0.1, 0.5 * size + 0.1)
-    below.set_aspect("equal", adjustable="datalim")
+    below.set_aspect("equal", anchor="N")
     below.set_axis_off()
     scale_bar(below, round_length(0.5 * size))
     colour_bar(edge, list(axes), field, shown[field].values, fraction=0.03)

@@ -17,6 +17,7 @@ from cellcrawl.validation import real_number
 
 _STEPS = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.5, 8.0, 10.0)
 _MARGIN = 0.2  # around the contours, in R_0
+_NARROWEST = 0.7  # width over height of the picture
 _MOST = 1000
 _APART = 0.45  # in R_0: between two times that are written
 _NEAREST = 0.4  # of `every`: nearer contours than this are not added at the end
@@ -168,8 +169,9 @@ def _ended_early(dataset: xr.Dataset) -> bool:
 
 
 def _box(clouds: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the corners of the box around all points."""
-    return (
-        np.min([cloud.min(axis=0) for cloud in clouds], axis=0),
-        np.max([cloud.max(axis=0) for cloud in clouds], axis=0),
-    )
+    """Return the corners of the box around all points, wide enough for what stands below it."""
+    low = np.min([cloud.min(axis=0) for cloud in clouds], axis=0)
+    high = np.max([cloud.max(axis=0) for cloud in clouds], axis=0)
+    missing = _NARROWEST * (high[1] - low[1]) - (high[0] - low[0])
+    widen = np.array([0.5 * max(missing, 0.0), 0.0])
+    return low - widen, high + widen
