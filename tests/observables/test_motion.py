@@ -79,7 +79,7 @@ def test_a_rest_does_not_break_the_unwrapping():
 @pytest.mark.parametrize(
     ("measure", "run", "said"),
     [
-        (cc.observables.speed, 3, "a run is an xarray Dataset, not int"),
+        (cc.observables.speed, 3, "a run is a Dataset; a track needs times, x and y"),
         (cc.observables.speed, straight().drop_vars("x"), "this dataset has no 'x'"),
         (cc.observables.speed, straight().isel(time=[]), "0 records"),
         (cc.observables.turning_rate, straight().isel(time=[0]), "at least 2 records needed"),

@@ -17,7 +17,7 @@ from cellcrawl.reproduction.runs import kept_run
 from cellcrawl.reproduction.workplace import Workplace
 
 CELL = cc.Parameters(r_on=26, zeta_1=600)
-SWEPT = ("fig4", "fig5", "fig7")
+SWEPT = ("fig4", "fig7")
 
 
 @pytest.fixture(scope="module")

@@ -90,14 +90,16 @@ def _classify(track: Track, cell_radius: float | None) -> Classification:
         return Classification("stationary", at_rest.fit, {}, still, at_rest.words)
     first = onset(smoothed)
     left = smoothed.t.size - first
-    found_at = {
-        later: _apply_rule(smoothed, first + int(later * left), cell_radius)
-        for later in (_LATER_STARTS if left > 2 * FEWEST_RECORDS else (0.0,))
-    }
-    named = {later: result for later, result in found_at.items() if result.mode != "other"}
-    best = found_at[0.0]
-    if named:
-        best = named[max(named, key=lambda later: named[later].confidence - _PREFER_EARLY * later)]
+    starts = _LATER_STARTS if left > 2 * FEWEST_RECORDS else _LATER_STARTS[:1]
+    best, best_score = None, 0.0
+    for later in starts:
+        if best_score >= 1.0 - _PREFER_EARLY * later:
+            break
+        result = _apply_rule(smoothed, first + int(later * left), cell_radius)
+        score = result.confidence - _PREFER_EARLY * later if result.mode != "other" else 0.0
+        if best is None or score > best_score:
+            best, best_score = result, score
+    assert best is not None
     seen = replace(
         best.measures,
         extent=still.extent,

@@ -9,7 +9,7 @@ import numpy as np
 from cellcrawl.modes.result import Measures
 from cellcrawl.observables.smoothing import SmoothTrack
 from cellcrawl.observables.track import Track
-from cellcrawl.observables.turns import Swings, swings_of
+from cellcrawl.observables.turns import Swings, crossing_times, swings_of
 
 SMALLEST_SWING = math.radians(20.0)
 """Swings of the heading smaller than this are not turns."""
@@ -54,7 +54,7 @@ def measure(track: SmoothTrack, first: int) -> Measures:
     inner = _complete(swings)
     turned = float(heading[-1])
     sizes = np.abs(inner.angle)
-    crossings = _crossing_times(times, heading, inner)
+    crossings = crossing_times(times, heading, inner)
     left, right = (_mean(sizes[inner.angle * sign > 0.0]) for sign in (1.0, -1.0))
     path = float(np.sum(np.hypot(np.diff(track.x[first:]), np.diff(track.y[first:]))))
     net = math.hypot(track.x[-1] - track.x[first], track.y[-1] - track.y[first])
@@ -88,22 +88,7 @@ def _complete(swings: Swings) -> Swings:
     if sizes.size < 4:
         return swings
     inner = sizes[1:-1].mean()
-    kept = slice(int(sizes[0] < inner), sizes.size - int(sizes[-1] < inner))
-    return Swings(swings.start[kept], swings.end[kept], swings.angle[kept])
-
-
-def _crossing_times(times: np.ndarray, heading: np.ndarray, swings: Swings) -> np.ndarray:
-    """Return when the heading is halfway through each swing."""
-    found = np.empty(swings.angle.size)
-    for i, (start, end, angle) in enumerate(
-        zip(swings.start.tolist(), swings.end.tolist(), swings.angle.tolist(), strict=True)
-    ):
-        part = (heading[start : end + 1] - heading[start]) / angle
-        k = max(int(np.argmax(part >= 0.5)), 1)
-        before, after = part[k - 1], part[k]
-        share = (0.5 - before) / (after - before)
-        found[i] = times[start + k - 1] + share * (times[start + k] - times[start + k - 1])
-    return found
+    return swings.part(slice(int(sizes[0] < inner), sizes.size - int(sizes[-1] < inner)))
 
 
 def _mean(values: np.ndarray) -> float:

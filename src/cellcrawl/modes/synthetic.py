@@ -112,9 +112,9 @@ def _walk(random: np.random.Generator, times: np.ndarray, heading: np.ndarray) -
         2.0 * math.pi * random.uniform(2.0, 12.0) * times / times[-1]
     )
     step = speed * wave * np.stack([np.cos(heading), np.sin(heading)])
-    return np.concatenate(
-        [np.zeros((2, 1)), np.cumsum(0.5 * (step[:, 1:] + step[:, :-1]), axis=1)], axis=1
-    ) * (times[1] - times[0])
+    path = np.zeros((2, times.size))
+    np.cumsum(0.5 * (step[:, 1:] + step[:, :-1]), axis=1, out=path[:, 1:])
+    return path * float(times[1] - times[0])
 
 
 def _straight(random: np.random.Generator, times: np.ndarray) -> np.ndarray:

@@ -1,22 +1,52 @@
-"""What is measured on a run: pure functions from the Dataset to DataArrays.
+"""What is measured on a run or on a track: pure functions.
 
-Everything is dimensionless in the scales of the model; each result carries its unit in
-``attrs["units"]``. The Notes of each function say where the measure misleads.
+Those of the centroid's motion take a run or plain arrays, ``speed(run)`` or ``speed(t, x, y)``;
+those of the edge take a run. A run is dimensionless in the scales of the model; a track has its
+user's units. Results that vary carry their unit in ``attrs["units"]``. The Notes of each function
+say where the measure misleads.
 """
 
+from cellcrawl.observables.asymmetry import front_rear_asymmetry, left_right_asymmetry
+from cellcrawl.observables.displacement import (
+    mean_distance,
+    mean_squared_displacement,
+    straightness,
+)
 from cellcrawl.observables.fourier import fourier_amplitude
 from cellcrawl.observables.front import front_position
 from cellcrawl.observables.kymograph import kymograph
 from cellcrawl.observables.motion import centroid_velocity, heading, speed, turning_rate
-from cellcrawl.observables.shape import circularity
+from cellcrawl.observables.oscillation import (
+    Oscillation,
+    lateral_oscillation,
+    oscillation,
+    tension_oscillation,
+)
+from cellcrawl.observables.persistence import Persistence, persistence, velocity_correlation
+from cellcrawl.observables.shape import aspect_ratio, circularity
+from cellcrawl.observables.turns import turning_events
 
 __all__ = [
+    "Oscillation",
+    "Persistence",
+    "aspect_ratio",
     "centroid_velocity",
     "circularity",
     "fourier_amplitude",
     "front_position",
+    "front_rear_asymmetry",
     "heading",
     "kymograph",
+    "lateral_oscillation",
+    "left_right_asymmetry",
+    "mean_distance",
+    "mean_squared_displacement",
+    "oscillation",
+    "persistence",
     "speed",
+    "straightness",
+    "tension_oscillation",
+    "turning_events",
     "turning_rate",
+    "velocity_correlation",
 ]

@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
 from cellcrawl.observables.inputs import records_with
+from cellcrawl.observables.track import Track, as_track
 
 AT_REST = 1e-6
 """A cell slower than this fraction of the run's highest speed has no heading."""
 _ROUNDING = 1e-12
 
 
-def centroid_velocity(dataset: xr.Dataset) -> xr.DataArray:
-    """Return the velocity of the area centroid, from the edge of each record alone.
+def centroid_velocity(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
+    """Return the velocity of the centroid.
 
-    ``dc/dt = (1/A) * integral of (x - c) U ds`` with the outward normal velocity ``U``: exact, no
-    difference in time is taken.
+    Of a run: that of the area centroid, from the edge of each record alone, ``dc/dt = (1/A) *
+    integral of (x - c) U ds`` with the outward normal velocity ``U``: exact, no difference in time
+    is taken. Of a track: differences in time, central where there are neighbours.
 
     Parameters
     ----------
-    dataset : Dataset
-        A run.
+    run : Dataset or array_like, shape (record,)
+        A run, or the times of a track.
+    x, y : array_like, shape (record,), optional
+        Positions at these times; left out with a run.
 
     Returns
     -------
@@ -31,16 +37,17 @@ def centroid_velocity(dataset: xr.Dataset) -> xr.DataArray:
     Raises
     ------
     InputError
-        If the dataset is no run or has no records.
+        If the dataset is no run or has no records, or the track is bad.
 
     Notes
     -----
     It is the velocity of the shape. Membrane or cortex may slide along the edge unseen. At the
-    start of a run the centroid moves because the edge ruffles, long before the cell crawls.
+    start of a run the centroid moves because the edge ruffles, long before the cell crawls. On a
+    track, localisation error over the interval adds to every velocity, and sharp turns are rounded.
     """
-    run = records_with(
-        dataset, "x", "y", "normal_velocity", "area", "length", "centroid_x", "centroid_y"
-    )
+    if x is not None or not isinstance(run, xr.Dataset):
+        return _velocity_of_track(as_track(run, x, y))
+    records_with(run, "x", "y", "normal_velocity", "area", "length", "centroid_x", "centroid_y")
     outward = run["normal_velocity"].values
     per_area = (run["length"] / run["area"]).values
     velocity = np.stack(
@@ -59,13 +66,15 @@ def centroid_velocity(dataset: xr.Dataset) -> xr.DataArray:
     )
 
 
-def speed(dataset: xr.Dataset) -> xr.DataArray:
+def speed(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
     """Return the speed of the area centroid.
 
     Parameters
     ----------
-    dataset : Dataset
-        A run.
+    run : Dataset or array_like, shape (record,)
+        A run, or the times of a track.
+    x, y : array_like, shape (record,), optional
+        Positions at these times; left out with a run.
 
     Returns
     -------
@@ -75,27 +84,29 @@ def speed(dataset: xr.Dataset) -> xr.DataArray:
     Raises
     ------
     InputError
-        If the dataset is no run or has no records.
+        If the dataset is no run or has no records, or the track is bad.
 
     Notes
     -----
     The instantaneous speed. Net displacement over time is smaller for every cell that turns, and
     speeds from microscopy, taken over long frame intervals, lie in between.
     """
-    velocity = centroid_velocity(dataset)
-    attributes = {"long_name": "speed of the centroid", "units": "R_0 k_off0"}
+    velocity = centroid_velocity(run, x, y)
+    attributes = {"long_name": "speed of the centroid", "units": velocity.attrs["units"]}
     return xr.DataArray(
-        _size(velocity.values), {"time": dataset["time"]}, ("time",), "speed", attributes
+        _size(velocity.values), {"time": velocity["time"]}, ("time",), "speed", attributes
     )
 
 
-def heading(dataset: xr.Dataset) -> xr.DataArray:
+def heading(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
     """Return the direction in which the centroid moves, as a continuous angle.
 
     Parameters
     ----------
-    dataset : Dataset
-        A run.
+    run : Dataset or array_like, shape (record,)
+        A run, or the times of a track.
+    x, y : array_like, shape (record,), optional
+        Positions at these times; left out with a run.
 
     Returns
     -------
@@ -106,7 +117,7 @@ def heading(dataset: xr.Dataset) -> xr.DataArray:
     Raises
     ------
     InputError
-        If the dataset is no run or has no records.
+        If the dataset is no run or has no records, or the track is bad.
 
     Notes
     -----
@@ -115,21 +126,24 @@ def heading(dataset: xr.Dataset) -> xr.DataArray:
     ruffles, and it jumps by pi when a cell stops and backs up. It is the direction of motion, not
     the axis of the shape.
     """
-    velocity = centroid_velocity(dataset).values
+    measured = centroid_velocity(run, x, y)
+    velocity = measured.values
     moving = _is_moving(_size(velocity))
     angle = np.full(moving.shape, np.nan)
     angle[moving] = np.unwrap(np.arctan2(velocity[moving, 1], velocity[moving, 0]))
     attributes = {"long_name": "heading of the centroid", "units": "rad"}
-    return xr.DataArray(angle, {"time": dataset["time"]}, ("time",), "heading", attributes)
+    return xr.DataArray(angle, {"time": measured["time"]}, ("time",), "heading", attributes)
 
 
-def turning_rate(dataset: xr.Dataset) -> xr.DataArray:
+def turning_rate(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
     """Return how fast the heading turns, positive counter-clockwise (to the left).
 
     Parameters
     ----------
-    dataset : Dataset
-        A run of two records or more.
+    run : Dataset or array_like, shape (record,)
+        A run of two records or more, or the times of a track.
+    x, y : array_like, shape (record,), optional
+        Positions at these times; left out with a run.
 
     Returns
     -------
@@ -140,20 +154,33 @@ def turning_rate(dataset: xr.Dataset) -> xr.DataArray:
     Raises
     ------
     InputError
-        If the dataset is no run or has fewer than two records.
+        If the dataset is no run or has fewer than two records, or the track is bad.
 
     Notes
     -----
     Turns shorter than two records are smoothed away. While the cell is slow the rate is large and
     means little: weigh it by the speed, or leave the transient out.
     """
-    records_with(dataset, at_least=2)
-    angle = heading(dataset)
+    if isinstance(run, xr.Dataset):
+        records_with(run, at_least=2)
+    angle = heading(run, x, y)
     rate = np.gradient(angle.values, angle["time"].values)
+    units = "rad k_off0" if isinstance(run, xr.Dataset) else ""
     return (
         angle.copy(data=rate)
         .rename("turning_rate")
-        .assign_attrs(long_name="turning rate of the centroid", units="rad k_off0")
+        .assign_attrs(long_name="turning rate of the centroid", units=units)
+    )
+
+
+def _velocity_of_track(track: Track) -> xr.DataArray:
+    velocity = np.stack([np.gradient(values, track.t) for values in (track.x, track.y)], axis=1)
+    return xr.DataArray(
+        velocity,
+        {"time": track.t, "component": ["x", "y"]},
+        ("time", "component"),
+        "centroid_velocity",
+        {"long_name": "velocity of the centroid", "units": ""},
     )
 
 

@@ -38,11 +38,6 @@ class Track:
         """Time from the first record to the last."""
         return float(self.t[-1] - self.t[0])
 
-    @property
-    def speed_units(self) -> str:
-        """The unit of a speed."""
-        return f"{self.length_units}/({self.time_units})" if self.time_units else ""
-
 
 def as_track(run: Any, x: Any = None, y: Any = None, *, at_least: int = 2) -> Track:
     """Return the centroid track of a run, or of plain arrays.
@@ -72,7 +67,7 @@ def as_track(run: Any, x: Any = None, y: Any = None, *, at_least: int = 2) -> Tr
         track = run if isinstance(run, Track) else _track_of(run, at_least)
     else:
         if x is None or y is None:
-            raise InputError("a track needs times, x and y: three arrays of the same size")
+            raise InputError("a run is a Dataset; a track needs times, x and y, arrays of one size")
         times = real_array("t", run, (None,))
         track = Track(times, _positions("x", x, times.size), _positions("y", y, times.size))
     if track.t.size < at_least:

@@ -24,7 +24,7 @@ from cellcrawl.plot.edge import (
 from cellcrawl.plot.inputs import drawable, record_at
 from cellcrawl.plot.scales import SERIES_LABELS, TIME_LABEL, Limits, norm_for
 from cellcrawl.plot.style import INK, PAGE, figure_of, paper_figure
-from cellcrawl.plot.time_series import draw_series
+from cellcrawl.plot.time_series import draw_series, series_values
 from cellcrawl.validation import known_names, real_number, whole_number
 
 _GAP = 0.25  # between two cells, in R_0
@@ -52,7 +52,7 @@ def cycle(
     dataset : Dataset
         A run.
     start, duration : float
-        The stretch, as one period found by `observables.oscillation`.
+        The stretch, as one period found by `observables.tension_oscillation`.
     shapes : int
         Number of cells, 2 to 16.
     quantity : str
@@ -109,8 +109,7 @@ def _draw(
 ) -> None:
     above, below = axes
     draw_series(above, stretch, quantity)
-    curve = above.lines[-1]
-    heights = np.interp(shown["time"].values, curve.get_xdata(), curve.get_ydata())
+    heights = series_values(shown, quantity).values
     above.plot(shown["time"].values, heights, "o", color=INK, markersize=2.5, zorder=3)
     above.set_xlabel(TIME_LABEL)
     outlines = [edge_points(shown, record) for record in range(shown.sizes["time"])]

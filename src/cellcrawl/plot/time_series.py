@@ -105,7 +105,7 @@ def draw_series(
     times = run["time"].values
     ax.plot(
         times,
-        _values(run, quantity).values,
+        series_values(run, quantity).values,
         marker="." if times.size == 1 else "",
         color=_COLOURS[quantity] if colour is None else colour,
         label=name or None,
@@ -117,7 +117,8 @@ def draw_series(
     ax.spines[["top", "right"]].set_visible(False)
 
 
-def _values(run: xr.Dataset, quantity: str) -> xr.DataArray:
+def series_values(run: xr.Dataset, quantity: str) -> xr.DataArray:
+    """Return one of the quantities of `time_series`."""
     if quantity == "speed":
         return observables.speed(run)
     if quantity == "circularity":

@@ -10,7 +10,7 @@ from cellcrawl import observables
 from cellcrawl.reproduction.cells import LONG, NINE, TRANSITIONS
 from cellcrawl.reproduction.workplace import Workplace
 
-SAVE_EVERY = 0.2
+SAVE_EVERY = 0.1
 
 
 def make(workplace: Workplace, name: str) -> list[str]:
