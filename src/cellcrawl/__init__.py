@@ -35,6 +35,10 @@ if TYPE_CHECKING:
     from cellcrawl.starts import FromOutline as FromOutline
     from cellcrawl.starts import PerturbedCircle as PerturbedCircle
     from cellcrawl.starts import RandomPerturbation as RandomPerturbation
+    from cellcrawl.sweeps import Grid as Grid
+    from cellcrawl.sweeps import Sweep as Sweep
+    from cellcrawl.sweeps import open_sweep as open_sweep
+    from cellcrawl.sweeps import sweep as sweep
 
 # Where each public name lives; loaded on first use, so that `import cellcrawl` stays light.
 _HOMES = {
@@ -45,6 +49,7 @@ _HOMES = {
     "Eigenmode": "starts",
     "FromOutline": "starts",
     "FromRun": "simulation",
+    "Grid": "sweeps",
     "InputError": "errors",
     "Parameters": "parameters",
     "PerturbedCircle": "starts",
@@ -55,10 +60,13 @@ _HOMES = {
     "StorageError": "errors",
     "classify": "modes",
     "classify_track": "modes",
+    "Sweep": "sweeps",
     "movie": "movies",
     "open_run": "simulation",
+    "open_sweep": "sweeps",
     "resume": "simulation",
     "simulate": "simulation",
+    "sweep": "sweeps",
 }
 _MODULES = ("linear", "modes", "observables", "plot")
 

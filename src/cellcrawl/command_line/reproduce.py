@@ -99,7 +99,11 @@ def _say_made(done: reproduction.Made, root: Path) -> None:
     say(f"{done.recipe.name:<11} {done.recipe.title}  [{took}]")
     for line in done.found:
         say(f"  found     {line}")
-    own = [path for path in done.files if path.parent.name == done.recipe.name]
+    own = [
+        path
+        for path in done.files
+        if path.parent.name == done.recipe.name and path.suffix != ".json"
+    ]
     for path in own:
         what = {".mp4": "movie", ".nc": "data", ".csv": "data", ".parquet": "data"}
         say(f"  {what.get(path.suffix, 'picture'):<9} {path}")

@@ -21,7 +21,7 @@ class _Panel(NamedTuple):
     mode: str
     shapes: int
     turns: int
-    """How many turns, each with a peak of tension, make a cycle: one left, one right in a zigzag."""
+    """How many turns, each with a peak of tension, make a cycle: two in a zigzag."""
 
 
 _PANELS: Final = (_Panel(24, 540, "rotation", 10, 1), _Panel(26, 600, "zigzag", 12, 2))

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
-from cellcrawl import observables
+from cellcrawl import classify, observables
 from cellcrawl.reproduction.cells import LONG, NINE, TRANSITIONS
 from cellcrawl.reproduction.workplace import Workplace
 
@@ -36,4 +37,14 @@ def make(workplace: Workplace, name: str) -> list[str]:
             "speed": observables.speed(run).values,
         },
     )
-    return [f"{run.attrs['status']} at t = {float(run['time'][-1]):g}"]
+    return [f"{run.attrs['status']} at t = {end:g}: {_modes(run, name, end)}"]
+
+
+def _modes(run: xr.Dataset, name: str, end: float) -> str:
+    """Name the mode, or those before and after the change."""
+    number = int(name.removeprefix("movie-s")) - 1
+    if number < len(NINE):
+        return classify(run).mode
+    change = TRANSITIONS[number - len(NINE)].time * end / LONG
+    before, after = run.sel(time=slice(None, change)), run.sel(time=slice(change, None))
+    return f"{classify(before).mode}, then {classify(after).mode}"

@@ -7,7 +7,7 @@ import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import xarray as xr
 from matplotlib.figure import Figure
@@ -15,6 +15,9 @@ from matplotlib.figure import Figure
 from cellcrawl.errors import StorageError
 from cellcrawl.parameters import Parameters
 from cellcrawl.reproduction.runs import kept_run
+
+if TYPE_CHECKING:
+    from cellcrawl.sweeps import Sweep
 
 FORMATS: Final = ("png", "pdf", "svg")
 _RECORD = "about.json"
@@ -64,6 +67,21 @@ class Workplace:
         dataset = kept_run(self.root / "runs", parameters, t_end, **options)
         self._written.append(Path(dataset.encoding["source"]))
         return dataset
+
+    def sweep(self, name: str, axes: Mapping[str, Any], t_end: float) -> Sweep:
+        """Return a sweep in the shared folder ``name``: what is there is not made again.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            If Ctrl-C ended it; what was done is kept.
+        """
+        from cellcrawl.sweeps import sweep
+
+        found = sweep(axes, self.root / name, t_end=t_end, progress=self.progress)
+        if found.interrupted:
+            raise KeyboardInterrupt
+        return found
 
     def data(self, name: str, dataset: xr.Dataset) -> None:
         """Write what a picture shows as netCDF."""

@@ -12,11 +12,11 @@ from cellcrawl.parameters import EDGE_ROWS, Conditions
 from cellcrawl.solvers.adaptive import chebyshev, resolution, stabilised
 from cellcrawl.solvers.adaptive import drive as drive
 from cellcrawl.solvers.adaptive import state as layout
-from cellcrawl.solvers.adaptive.frame import frame
+from cellcrawl.solvers.adaptive.frame import Shape, frame, instant, shape_within_step
 from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, stiffness
 from cellcrawl.solvers.adaptive.scheme import Scheme, fourth_order_scheme
 from cellcrawl.solvers.adaptive.staggered import HALO
-from cellcrawl.solvers.base import Breakdown, Frame, Solver
+from cellcrawl.solvers.base import Breakdown, Frame, Instant, Solver
 from cellcrawl.starts.base import CellState
 from cellcrawl.validation import real_number, whole_number
 
@@ -66,6 +66,7 @@ class AdaptiveSolver(Solver):
         self._tally = np.zeros(4)  # fewest nodes, most nodes, regrids, largest closure error
         self._control[drive.TIME] = self._control[drive.PREVIOUS_TIME] = time
         self._edges: tuple[float, np.ndarray] | None = None
+        self._measured: tuple[float, Shape] | None = None
         self._counters[drive.RESTARTING] = 1
         self._counters[drive.ORDER] = stabilised.ORDER
         if start is not None:
@@ -88,6 +89,7 @@ class AdaptiveSolver(Solver):
         return _START_NODES if rtol >= _TIGHT_RTOL else 4 * _START_NODES
 
     def advance(self, target: float) -> Breakdown | None:
+        self._measured = None
         while self.time < target:
             now = self.time
             end = self._conditions.next_break(now)
@@ -120,17 +122,25 @@ class AdaptiveSolver(Solver):
                 return self._stuck(code)
         return None
 
+    def instant(self, time: float) -> Instant:
+        return instant(time, self._shape(time))
+
     def frame(self, time: float) -> Frame:
+        edge = self._conditions.edge(time, self._nodes)
+        return frame(time, self._shape(time), self._log_rate, edge)
+
+    def _shape(self, time: float) -> Shape:
+        """Return the edge at ``time``, measured once."""
+        if self._measured is not None and self._measured[0] == time:
+            return self._measured[1]
         first, last = self._control[drive.PREVIOUS_TIME], self.time
         if not first <= time <= last:
             raise ValueError(f"t = {time} is not within the last step, from {first} to {last}")
-        state = self._states[drive.CURRENT]
-        if time < last:
-            ends = self._states[drive.PREVIOUS : drive.TRIAL]
-            state = layout.hermite((time - first) / (last - first), last - first, ends)
-        made, closure = frame(time, state, self._log_rate, self._conditions.edge(time, self._nodes))
-        self._tally[3] = max(self._tally[3], closure)
-        return made
+        part = (time - first) / (last - first) if time < last else 1.0
+        shape = shape_within_step(part, last - first, self._states[drive.PREVIOUS : drive.TRIAL])
+        self._tally[3] = max(self._tally[3], shape.closure_error)
+        self._measured = (time, shape)
+        return shape
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         return {
@@ -199,6 +209,7 @@ class AdaptiveSolver(Solver):
 
     def _hold(self, states: np.ndarray) -> None:
         """Take up states PREVIOUS to CURRENT_RATES and make room for the work on them."""
+        self._measured = None
         nodes = layout.nodes_of(states)
         self._states = np.zeros((stabilised.STATE_ROWS, layout.size(nodes)))
         self._states[: drive.TRIAL] = states

@@ -83,14 +83,3 @@ def regridded(states: np.ndarray, nodes: int) -> np.ndarray:
 def resampled_midpoints(samples: np.ndarray, nodes: int) -> np.ndarray:
     """Return samples at midpoints on another number of nodes."""
     return shifted(fourier.resample(shifted(samples, -0.5), nodes), 0.5)
-
-
-def hermite(part: float, step: float, ends: np.ndarray) -> np.ndarray:
-    """State at ``part`` of a step from ``ends``: first state, its rates, last state, its rates."""
-    first, first_rates, last, last_rates = ends
-    rest = 1.0 - part
-    return np.asarray(
-        rest * rest * (1.0 + 2.0 * part) * first
-        + part * part * (3.0 - 2.0 * part) * last
-        + step * part * rest * (rest * first_rates - part * last_rates)
-    )

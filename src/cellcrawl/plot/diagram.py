@@ -1,0 +1,246 @@
+"""Diagrams of a sweep over two parameters: the modes, or the mean of a measure."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.markers import MarkerStyle
+from matplotlib.path import Path
+
+from cellcrawl.errors import InputError
+from cellcrawl.plot.mode_symbols import EDGE, MODE_SYMBOLS
+from cellcrawl.plot.style import PAGE, axes_or_new, figure_of
+from cellcrawl.plot.symbols import parameter_label
+from cellcrawl.sweeps import Sweep
+from cellcrawl.sweeps.planes import Plane, means, plane
+
+_HEIGHT = 0.5 * PAGE
+_ABOVE = 3.0  # zorder: above a stability map
+_FILLS = 0.62  # of the space between points
+_SMALLEST, _LARGEST = 3.0, 9.0  # points
+_ARC = 24  # vertices of a full pie
+
+
+def diagram(
+    sweep: Sweep,
+    x: str | None = None,
+    y: str | None = None,
+    *,
+    legend: bool = True,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw which mode cells take up over two parameters.
+
+    A point where all runs agree has the mode's colour and marker; one where they differ is a small
+    pie of the runs' modes, torn cells included.
+
+    Parameters
+    ----------
+    sweep : Sweep
+        From `sweep` or `open_sweep`, finished or not.
+    x, y : str, optional
+        The parameters; the first two that differ unless given. Runs that differ in something else,
+        their seeds say, are put together in one point.
+    legend : bool
+        Name the modes above the axes, with the number of runs of each.
+    ax : Axes, optional
+        Where to draw, on top of a stability map say; the only axes of a new figure unless given.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    InputError
+        If there are no rows, or not two parameters that differ.
+    """
+    found = plane(_rows(sweep), x, y)
+    with axes_or_new(ax, PAGE, _HEIGHT) as axes:
+        if ax is None:
+            _frame(axes, found)
+        size = _marker_size(axes, found)
+        _draw_points(axes, found, size)
+        axes.set_xlabel(parameter_label(found.x_name))
+        axes.set_ylabel(parameter_label(found.y_name))
+        if legend:
+            _name_modes(axes, found)
+    return axes
+
+
+def measure_map(
+    sweep: Sweep,
+    measure: str,
+    x: str | None = None,
+    y: str | None = None,
+    *,
+    colorbar: bool = True,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw the mean of a measure over two parameters, without torn cells.
+
+    Parameters
+    ----------
+    sweep : Sweep
+        From `sweep` or `open_sweep`.
+    measure : str
+        A measured column: "speed", "tension", "circularity", "x_c", "tension_period", ...
+    x, y : str, optional
+        The parameters; the first two that differ unless given.
+    colorbar : bool
+        Draw the colour bar.
+    ax : Axes, optional
+        Where to draw; the only axes of a new figure unless given.
+
+    Returns
+    -------
+    Axes
+        Points are drawn as tiles where they make a regular grid, else as dots; a point without a
+        value is left blank.
+
+    Raises
+    ------
+    InputError
+        For an unknown measure, or as for `diagram`.
+    """
+    from cellcrawl.sweeps.measures import MEASURES
+
+    table = _rows(sweep)
+    values = means(table, measure, x, y)
+    found = plane(table, x, y)
+    with axes_or_new(ax, 0.5 * PAGE, 0.4 * PAGE) as axes:
+        across, up = np.unique(found.x), np.unique(found.y)
+        drawn: Any
+        if across.size * up.size == found.x.size:
+            tiles = values.reshape(across.size, up.size).T
+            drawn = axes.pcolormesh(across, up, tiles, cmap="viridis", shading="nearest")
+        else:
+            _frame(axes, found)
+            size = _marker_size(axes, found)
+            drawn = axes.scatter(
+                found.x, found.y, s=size**2, c=values, cmap="viridis", linewidths=0
+            )
+        axes.set_xlabel(parameter_label(found.x_name))
+        axes.set_ylabel(parameter_label(found.y_name))
+        if colorbar:
+            bar = axes.figure.colorbar(drawn, ax=axes, pad=0.02)
+            bar.set_label(MEASURES[measure].partition(",")[0])
+            bar.outline.set_visible(False)
+    return axes
+
+
+def _rows(sweep: Sweep) -> Any:
+    if not isinstance(sweep, Sweep):
+        raise InputError(f"a diagram needs a Sweep (see open_sweep), not {type(sweep).__name__}")
+    table = sweep.table()
+    if len(table) == 0:
+        raise InputError(f"{sweep.path} has no rows yet: there is nothing to draw")
+    return table
+
+
+def _frame(axes: Axes, found: Plane) -> None:
+    """Set limits half a space outside the points."""
+    for values, limits in ((found.x, axes.set_xlim), (found.y, axes.set_ylim)):
+        places = np.unique(values)
+        margin = 0.75 * float(np.min(np.diff(places))) if places.size > 1 else 1.0
+        limits(float(places[0]) - margin, float(places[-1]) + margin)
+
+
+def _marker_size(axes: Axes, found: Plane) -> float:
+    """Diameter in points at which neighbours stay apart."""
+    figure = figure_of(axes)
+    box = axes.get_position()
+    width = 72.0 * figure.get_figwidth() * box.width
+    height = 72.0 * figure.get_figheight() * box.height
+    spaces = []
+    for values, limits, room in (
+        (found.x, axes.get_xlim(), width),
+        (found.y, axes.get_ylim(), height),
+    ):
+        places = np.unique(values)
+        if places.size > 1:
+            spaces.append(float(np.min(np.diff(places))) * room / abs(limits[1] - limits[0]))
+    return min(max(_FILLS * min(spaces, default=_LARGEST), _SMALLEST), _LARGEST)
+
+
+def _draw_points(axes: Axes, found: Plane, size: float) -> None:
+    runs = found.runs
+    agreed = np.zeros(runs.size, dtype=bool)
+    for mode, count in found.counts.items():
+        whole = count == runs
+        agreed |= whole
+        symbol = MODE_SYMBOLS[mode]
+        scale = 0.85 if symbol.marker in ("D", "s") else 1.0
+        axes.scatter(
+            found.x[whole],
+            found.y[whole],
+            s=(scale * size) ** 2,
+            c=symbol.colour,
+            marker=symbol.marker,
+            linewidths=0.3,
+            edgecolors=EDGE,
+            zorder=_ABOVE,
+        )
+    slices: dict[tuple[str, float, float], list[int]] = {}
+    for point in np.flatnonzero(~agreed).tolist():
+        first = 0.0
+        for mode, count in found.counts.items():
+            part = float(count[point]) / float(runs[point])
+            if part > 0.0:
+                slices.setdefault((mode, round(first, 6), round(first + part, 6)), []).append(point)
+            first += part
+    for (mode, first, last), points in slices.items():
+        outline, extent = _slice(first, last)
+        axes.scatter(
+            found.x[points],
+            found.y[points],
+            s=(extent * size) ** 2,
+            c=MODE_SYMBOLS[mode].colour,
+            marker=MarkerStyle(outline),
+            linewidths=0.3,
+            edgecolors=EDGE,
+            zorder=_ABOVE,
+        )
+
+
+def _slice(first: float, last: float) -> tuple[Path, float]:
+    """Return a slice of a pie of diameter 1, clockwise from the top, and how far it reaches.
+
+    Matplotlib scales a marker by the largest of its coordinates.
+    """
+    count = max(2, math.ceil(_ARC * (last - first)) + 1)
+    angle = 0.5 * math.pi - 2.0 * math.pi * np.linspace(first, last, count)
+    rim = np.column_stack([np.cos(angle), np.sin(angle)])
+    outline = np.concatenate([[[0.0, 0.0]], rim, [[0.0, 0.0]]])
+    return Path(outline, closed=True), float(np.abs(outline).max())
+
+
+def _name_modes(axes: Axes, found: Plane) -> None:
+    keys = [
+        Line2D(
+            [],
+            [],
+            linestyle="none",
+            marker=MODE_SYMBOLS[mode].marker,
+            markerfacecolor=MODE_SYMBOLS[mode].colour,
+            markeredgecolor=EDGE,
+            markeredgewidth=0.3,
+            markersize=5.0,
+            label=f"{mode} ({int(count.sum())})",
+        )
+        for mode, count in found.counts.items()
+    ]
+    axes.legend(
+        handles=keys,
+        loc="lower center",
+        bbox_to_anchor=(0.5, 1.0),
+        ncols=len(keys),
+        frameon=False,
+        handletextpad=0.1,
+        columnspacing=1.0,
+        borderpad=0.2,
+    )
