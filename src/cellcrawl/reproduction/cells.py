@@ -46,7 +46,7 @@ class Change(NamedTuple):
     first: tuple[float, float]
     second: tuple[float, float]
     title: str
-    time: float = 50.0
+    time: float = 30.0
     over: float = 0.0
     """How long the change takes; 0 for a jump."""
 
@@ -62,11 +62,15 @@ class Change(NamedTuple):
 
 
 TRANSITIONS: Final = (
-    Change((26, 600), (24, 540), "from zigzag (26, 600) to rotation (24, 540) at t = 50"),
-    Change((24, 540), (56, 560), "from rotation (24, 540) to gliding (56, 560) at t = 50"),
-    Change((56, 560), (26, 600), "from gliding (56, 560) to zigzag (26, 600) at t = 50"),
+    Change((26, 600), (24, 540), "from zigzag (26, 600) to rotation (24, 540) at t = 30"),
+    Change((24, 540), (56, 560), "from rotation (24, 540) to gliding (56, 560) at t = 30"),
+    Change(
+        (56, 560), (26, 600), "from gliding (56, 560) to zigzag (26, 600), t = 30 to 40", 30, 10
+    ),
 )
-"""Movies S10-S12; which changes the paper's are is not in its main text, these are our choice."""
+"""Movies S10-S12: the paper's main text does not say which changes they show; this is our choice.
+
+The last is gradual: an abrupt one leaves the cell at rest, see Fig. 6 C."""
 
 
 def through(points: list[tuple[float, tuple[float, float]]]) -> Schedule:

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 import xarray as xr
 
-from cellcrawl import plot
+from cellcrawl import classify, observables, plot
 from cellcrawl.parameters import Parameters, Schedule
 from cellcrawl.plot.style import PAGE, paper_figure
 from cellcrawl.reproduction.cells import through
@@ -17,6 +17,8 @@ GLIDES: Final = (16.0, 580.0)
 ZIGZAGS: Final = (30.0, 580.0)
 _BETWEEN: Final = (24.0, 540.0)
 _FRESH: Final = "(30, 580) from the start"
+_ROUND: Final = (56.0, 560.0)
+_ZIGZAGS_TOO: Final = (26.0, 600.0)
 
 
 def routes(scale: float = 1.0) -> dict[str, Schedule]:
@@ -54,21 +56,50 @@ def make(workplace: Workplace, name: str) -> list[str]:
     fresh = workplace.run(first.replace(r_on=ZIGZAGS[0]), end, save_every=0.1)
     abrupt = next(iter(runs.values()))
     window = abrupt.sel(time=slice(10.0 * scale, 70.0 * scale))
-    with paper_figure(PAGE, 3.6) as figure:
-        left, right = figure.subplots(1, 2, width_ratios=(1.0, 1.9))
+    round_ones = _from_round(workplace, scale)
+    with paper_figure(PAGE, 5.2) as figure:
+        grid = figure.add_gridspec(2, 2, width_ratios=(1.0, 1.9), height_ratios=(1.5, 1.0))
+        left = figure.add_subplot(grid[:, 0])
         plot.path(window, every=5.0 * scale, times=True, ax=left)
+        for row, letter, shown in ((0, "B", {**runs, _FRESH: fresh}), (1, "C", round_ones)):
+            panel = figure.add_subplot(grid[row, 1])
+            plot.time_series(shown, ["tension"], axes=[panel])
+            panel.legend(frameon=False, ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.2))
+            panel.set_title(letter, loc="left", fontweight="bold")
         left.set_title("A", loc="left", fontweight="bold")
-        plot.time_series({**runs, _FRESH: fresh}, ["tension"], axes=[right])
-        right.legend(frameon=False, ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.14))
-        right.set_title("B", loc="left", fontweight="bold")
         workplace.picture(figure)
-    tension = {label: run["tension"] for label, run in runs.items()}
-    tension[_FRESH] = fresh["tension"]
-    workplace.table(
-        "tension",
-        {"time": fresh["time"].values, **{label: t.values for label, t in tension.items()}},
-    )
-    return _found(tension, end)
+    tension = {label: run["tension"] for label, run in {**runs, _FRESH: fresh}.items()}
+    columns = {label: values.values for label, values in tension.items()}
+    workplace.table("tension", {"time": fresh["time"].values, **columns})
+    columns = {label: run["tension"].values for label, run in round_ones.items()}
+    workplace.table("tension-from-round", {"time": fresh["time"].values, **columns})
+    return [*_found(tension, end), *_found_from_round(round_ones, end)]
+
+
+def _from_round(workplace: Workplace, scale: float) -> dict[str, xr.Dataset]:
+    """Return runs of a nearly round glider made to zigzag: by a jump, slowly, by the other law."""
+    runs = {}
+    for law, over in (("printed", 0.0), ("printed", 10.0), ("consistent", 0.0)):
+        cell = Parameters(r_on=_ROUND[0], zeta_1=_ROUND[1], elasticity=law)
+        schedule = through([(scale * 25, _ROUND), (scale * (25 + over), _ZIGZAGS_TOO)])
+        how = f"Δt = {over:g}" if over else "abrupt"
+        runs[f"{how}, {law} law"] = workplace.run(
+            cell, 100.0 * scale, schedule=schedule, save_every=0.1
+        )
+    return runs
+
+
+def _found_from_round(runs: dict[str, xr.Dataset], end: float) -> list[str]:
+    found = []
+    for label, run in runs.items():
+        late = run.sel(time=slice(0.6 * end, None))
+        tension = late["tension"].values
+        found.append(
+            f"(56, 560) to (26, 600), {label}: {classify(late).mode}, tension "
+            f"{tension.min():.0f} to {tension.max():.0f}, "
+            f"speed {float(observables.speed(late).mean()):.3f}"
+        )
+    return found
 
 
 def _found(tension: dict[str, xr.DataArray], end: float) -> list[str]:

@@ -12,7 +12,11 @@ from cellcrawl.reproduction.plane import keep_table, swept
 from cellcrawl.reproduction.workplace import Workplace
 from cellcrawl.sweeps import Sweep
 
-_MEASURES: Final = ("circularity", "tension", "x_c")
+_MEASURES: Final = {
+    "circularity": r"circularity $4\pi A/L^2$",
+    "tension": r"tension $\sigma$ ($\zeta_0 v_\beta/2$)",
+    "x_c": "distance from start $x_c$ ($R_0$)",
+}
 _MOVING: Final = ("gliding", "rotational", "zigzag", "other")
 
 
@@ -22,7 +26,8 @@ def make(workplace: Workplace, name: str) -> list[str]:
     with paper_figure(PAGE, 6.6) as figure:
         panels = figure.subplots(len(_MEASURES), 1, sharex=True)
         for letter, panel, measure in zip("ABC", panels, _MEASURES, strict=True):
-            plot.measure_map(sweep, measure, "r_on", "zeta_1", ax=panel)
+            plot.measure_map(sweep, measure, "r_on", "zeta_1", colorbar=False, ax=panel)
+            figure.colorbar(panel.collections[0], ax=panel, pad=0.02, label=_MEASURES[measure])
             panel.set_title(letter, loc="left", fontweight="bold")
         figure.canvas.draw()  # symbols are sized by the room that the axes have
         for letter, panel in zip("ABC", panels, strict=True):
@@ -30,7 +35,7 @@ def make(workplace: Workplace, name: str) -> list[str]:
         for panel in panels[:-1]:
             panel.set_xlabel("")
         workplace.picture(figure)
-    keep_table(workplace, sweep, _MEASURES)
+    keep_table(workplace, sweep, tuple(_MEASURES))
     return _found(sweep)
 
 

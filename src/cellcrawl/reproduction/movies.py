@@ -12,6 +12,7 @@ from cellcrawl.reproduction.cells import LONG, NINE, TRANSITIONS
 from cellcrawl.reproduction.workplace import Workplace
 
 SAVE_EVERY = 0.1
+_SETTLES = 10.0  # time after a change that is left out when the mode is named
 
 
 def make(workplace: Workplace, name: str) -> list[str]:
@@ -22,7 +23,8 @@ def make(workplace: Workplace, name: str) -> list[str]:
         run = workplace.run(NINE[number].parameters, end, save_every=SAVE_EVERY)
     else:
         change = TRANSITIONS[number - len(NINE)]
-        change = change._replace(time=change.time * end / LONG)
+        scale = end / LONG
+        change = change._replace(time=change.time * scale, over=change.over * scale)
         run = workplace.run(change.parameters, end, schedule=change.schedule, save_every=SAVE_EVERY)
     options: dict[str, Any] = {"seconds": 1.0, "size": (320, 240)} if workplace.quick else {}
     workplace.movie(run, **options)
@@ -45,6 +47,8 @@ def _modes(run: xr.Dataset, name: str, end: float) -> str:
     number = int(name.removeprefix("movie-s")) - 1
     if number < len(NINE):
         return classify(run).mode
-    change = TRANSITIONS[number - len(NINE)].time * end / LONG
-    before, after = run.sel(time=slice(None, change)), run.sel(time=slice(change, None))
+    change = TRANSITIONS[number - len(NINE)]
+    settled = change.time + change.over + _SETTLES
+    before = run.sel(time=slice(None, change.time * end / LONG))
+    after = run.sel(time=slice(settled * end / LONG, None))
     return f"{classify(before).mode}, then {classify(after).mode}"

@@ -20,7 +20,7 @@ _FIGURES: Final = (
         "fig4",
     ),
     Recipe("fig5", "one period of a rotating and of a zigzagging cell", "2 runs", 5, "fig5"),
-    Recipe("fig6", "a gliding cell becomes a zigzagging one", "7 runs", 8, "fig6"),
+    Recipe("fig6", "a gliding cell becomes a zigzagging one", "10 runs", 12, "fig6"),
     Recipe(
         "fig7",
         "circularity, tension and distance over (r_on, zeta_1)",
