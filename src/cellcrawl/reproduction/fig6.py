@@ -61,18 +61,21 @@ def make(workplace: Workplace, name: str) -> list[str]:
         grid = figure.add_gridspec(2, 2, width_ratios=(1.0, 1.9), height_ratios=(1.5, 1.0))
         left = figure.add_subplot(grid[:, 0])
         plot.path(window, every=5.0 * scale, times=True, ax=left)
-        for row, letter, shown in ((0, "B", {**runs, _FRESH: fresh}), (1, "C", round_ones)):
-            panel = figure.add_subplot(grid[row, 1])
-            plot.time_series(shown, ["tension"], axes=[panel])
-            panel.legend(frameon=False, ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.2))
+        upper, lower = (figure.add_subplot(grid[row, 1]) for row in (0, 1))
+        plot.time_series({**runs, _FRESH: fresh}, ["tension"], axes=[upper])
+        plot.time_series(round_ones, ["tension"], axes=[lower])
+        lower.set_xlim(20.0 * scale, 45.0 * scale)
+        for panel, below in ((upper, -0.2), (lower, -0.32)):
+            panel.legend(frameon=False, ncols=2, loc="upper center", bbox_to_anchor=(0.5, below))
+        for panel, letter in ((left, "A"), (upper, "B"), (lower, "C")):
             panel.set_title(letter, loc="left", fontweight="bold")
-        left.set_title("A", loc="left", fontweight="bold")
         workplace.picture(figure)
     tension = {label: run["tension"] for label, run in {**runs, _FRESH: fresh}.items()}
     columns = {label: values.values for label, values in tension.items()}
     workplace.table("tension", {"time": fresh["time"].values, **columns})
     columns = {label: run["tension"].values for label, run in round_ones.items()}
-    workplace.table("tension-from-round", {"time": fresh["time"].values, **columns})
+    times = next(iter(round_ones.values()))["time"].values
+    workplace.table("tension-from-round", {"time": times, **columns})
     return [*_found(tension, end), *_found_from_round(round_ones, end)]
 
 
@@ -84,7 +87,7 @@ def _from_round(workplace: Workplace, scale: float) -> dict[str, xr.Dataset]:
         schedule = through([(scale * 25, _ROUND), (scale * (25 + over), _ZIGZAGS_TOO)])
         how = f"Δt = {over:g}" if over else "abrupt"
         runs[f"{how}, {law} law"] = workplace.run(
-            cell, 100.0 * scale, schedule=schedule, save_every=0.1
+            cell, 100.0 * scale, schedule=schedule, save_every=0.04, nodes=64
         )
     return runs
 

@@ -26,6 +26,7 @@ def kept_run(
     amplitude: float = 1e-4,
     save_every: float = 0.1,
     schedule: Schedule | None = None,
+    nodes: int | None = None,
     **options: Any,
 ) -> xr.Dataset:
     """Return the run from a random start, from its file in ``folder`` if it is there.
@@ -46,6 +47,7 @@ def kept_run(
         "parameters": parameters.to_dict(),
         "start": start.describe(),
         "schedule": plan.to_dict(),
+        "nodes": nodes,
         "options": options,
         "t_end": float(t_end),
         "save_every": float(save_every),
@@ -62,6 +64,7 @@ def kept_run(
             start=start,
             schedule=plan,
             save_every=save_every,
+            nodes=nodes,
             output=path,
             overwrite=True,
             **options,
