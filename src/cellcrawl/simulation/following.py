@@ -16,6 +16,7 @@ from cellcrawl.solvers import Breakdown, Frame, Instant, Solver
 
 Kept = TypeVar("Kept")
 _CHECK_EVERY = 0.1  # longest time between two looks for a self-crossing
+_CHECKS_PER_CHECKPOINT = 10  # a crossing is traced back from the last checkpoint
 _SAME_TIME = 1e-9  # relative
 
 
@@ -40,34 +41,35 @@ class Follower(Generic[Kept]):
             last = None if closing is None else self._record_at(closing)
             reached = self._last_record() if closing is None else closing
             attributes = self._attributes(ended, reached)
-            return self.recorder.finish(last, self._checkpoint, attributes)
+            return self.recorder.finish(last, self.solver.checkpoint(), attributes)
 
     def _follow(self, t_end: float, interruption: Interruption) -> tuple[Breakdown, float | None]:
         """Return how the run ended and the time of a closing record, None if it is on the grid."""
         now = self._last_record() if self.records else -0.5 * _CHECK_EVERY
-        valid = self._checkpoint = self.solver.checkpoint()
+        valid, age = self.solver.checkpoint(), 0
         while True:
             target, on_grid = self._next_target(now, t_end)
             ended = self.solver.advance(target)
             if ended is not None:
                 last = self.solver.time
                 if crossing_at(self.solver, last) is None:
-                    self._checkpoint = self.solver.checkpoint()
                     return ended, self._off_grid(max(last, now))
                 target = last
             seen, crossed = self._look(target)
             if crossed:
                 found = locate_crossing(self.solver, valid, now, target)
-                self._checkpoint = self.solver.checkpoint()
                 return found.breakdown, self._off_grid(found.last_valid)
-            valid, now = self.solver.checkpoint(), target
-            self._checkpoint = valid
+            now, age = target, age + 1
+            commits = False
             if on_grid:
                 self.records += 1
                 self.progress.update(target, seen.tension)
-                if self.recorder.record(self._record_at(target, seen)):
-                    running = Breakdown("running", target, f"has reached t = {target:g}")
-                    self.recorder.commit(valid, self._attributes(running, target))
+                commits = self.recorder.record(self._record_at(target, seen))
+            if commits or age == _CHECKS_PER_CHECKPOINT:
+                valid, age = self.solver.checkpoint(), 0
+            if commits:
+                running = Breakdown("running", target, f"has reached t = {target:g}")
+                self.recorder.commit(valid, self._attributes(running, target))
             if now >= t_end or same_time(now, t_end):
                 done = Breakdown("completed", t_end, f"reached t_end = {t_end:g}")
                 return done, self._off_grid(now)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import io
 import os
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, BinaryIO, Self
 
 import xarray as xr
 
@@ -30,13 +31,15 @@ class KeptRuns:
 
         if self._file is None:
             self._path.parent.mkdir(parents=True, exist_ok=True)
-            self._file = h5netcdf.File(self._temporary, "w")
+            self._bytes = _Patient(self._temporary.open("w+b", buffering=0))
+            self._file = h5netcdf.File(self._bytes, "w")
         group = self._file.create_group(key)
         group.dimensions = dict(dataset.sizes)
         for name, variable in dataset.variables.items():
             written = group.create_variable(name, variable.dims, data=variable.values)
             written.attrs.update(variable.attrs)
         group.attrs.update(dataset.attrs)
+        self._bytes.failed()
 
     def __exit__(
         self,
@@ -48,13 +51,70 @@ class KeptRuns:
             return
         try:
             self._file.close()
+            self._bytes.finish()
             if error is None:
-                with self._temporary.open("rb") as written:
-                    os.fsync(written.fileno())
                 self._temporary.replace(self._path)
         finally:
             with contextlib.suppress(OSError):
                 self._temporary.unlink(missing_ok=True)
+
+
+class _Patient(io.RawIOBase):
+    """A file that hides a failed write until `finish`: HDF5 may crash when a write fails."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+        self._failed: OSError | None = None
+
+    def readable(self) -> bool:
+        return True
+
+    def writable(self) -> bool:
+        return True
+
+    def seekable(self) -> bool:
+        return True
+
+    def readinto(self, buffer: Any) -> int:
+        data = self._file.read(len(buffer))
+        buffer[: len(data)] = data
+        return len(data)
+
+    def write(self, data: Any) -> int:
+        if self._failed is None:
+            try:
+                return self._file.write(data)
+            except OSError as error:
+                self._failed = error
+        return len(data)
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        return self._file.seek(offset, whence)
+
+    def tell(self) -> int:
+        return self._file.tell()
+
+    def truncate(self, size: int | None = None) -> int:
+        if self._failed is None:
+            try:
+                return self._file.truncate(size)
+            except OSError as error:
+                self._failed = error
+        return 0
+
+    def flush(self) -> None:
+        return
+
+    def failed(self) -> None:
+        """Raise the error of the first failed write, if there was one."""
+        if self._failed is not None:
+            raise self._failed
+
+    def finish(self) -> None:
+        """Close, with all data on the disk or an error raised."""
+        with self._file:
+            self.failed()
+            os.fsync(self._file.fileno())
 
 
 def read_kept(path: Path, key: str) -> xr.Dataset:

@@ -19,6 +19,7 @@ from cellcrawl.physics.exponential import exponential
 from cellcrawl.physics.force_balance import SOLVED, balance, solve_off_rate
 from cellcrawl.physics.laws import driving_force, edge_velocity, friction
 from cellcrawl.solvers.adaptive import state as layout
+from cellcrawl.solvers.adaptive.differences import interpolate
 from cellcrawl.solvers.adaptive.rates import LENGTH, ORIGIN_X, ORIGIN_Y, SCALARS, TENSION
 from cellcrawl.solvers.adaptive.staggered import (
     HALO,
@@ -50,14 +51,19 @@ class Shape(NamedTuple):
     """Whether every point of the edge is seen from the centroid; then it cannot cross itself."""
 
 
-def shape_within_step(part: float, step: float, ends: np.ndarray) -> Shape:
-    """Return the edge at ``part`` of a step.
+def shape_of(state: np.ndarray) -> Shape:
+    """Return the edge of a state."""
+    return shape_between(0.0, 0, state[None])
 
-    ``ends``: first state, its rates, last state, its rates.
+
+def shape_between(steps: float, order: int, table: np.ndarray) -> Shape:
+    """Return the edge ``steps`` step sizes after the last state, between -1 and 0.
+
+    ``table`` holds the state and its backward differences.
     """
-    state = np.empty_like(ends[0])
+    state = np.empty_like(table[0])
     work = np.empty((5, layout.nodes_of(state) + 2 * HALO))
-    area, x, y, gap, clearance = _edge_shape(part, step, ends, state, work)
+    area, x, y, gap, clearance = _edge_shape(steps, order, table, state, work)
     return Shape(state, work, area, (x, y), gap, clearance > _CLEARLY)
 
 
@@ -99,13 +105,13 @@ def _whole_cell(shape: Shape) -> dict[str, Any]:
 
 @kernel
 def _edge_shape(
-    part: float, step: float, ends: np.ndarray, state: np.ndarray, work: np.ndarray
+    steps: float, order: int, table: np.ndarray, state: np.ndarray, work: np.ndarray
 ) -> tuple[float, float, float, float, float]:
     """Area, centroid from node 0, closure error over the length, least support from the centroid.
 
     Fills ``state``, and ``work`` as `Shape` has it.
     """
-    _between(part, step, ends, state)
+    interpolate(steps, order, table, state)
     span = (state.size - SCALARS) // 2
     count = span - 2 * HALO
     w, n, length = state[:span], state[span : 2 * span], state[2 * span + LENGTH]
@@ -153,21 +159,6 @@ def _edge_shape(
         support = arm_x * sine[j] - arm_y * cosine[j]
         least = support if support < least else least
     return 0.5 * spacing * area, center_x, center_y, math.hypot(gap_x, gap_y) / length, least
-
-
-@kernel
-def _between(part: float, step: float, ends: np.ndarray, state: np.ndarray) -> None:
-    """Fill ``state`` with the cubic through both ends of a step and their rates."""
-    rest = 1.0 - part
-    first, last = rest * rest * (1.0 + 2.0 * part), part * part * (3.0 - 2.0 * part)
-    first_rates, last_rates = step * part * rest * rest, -step * part * rest * part
-    for i in range(state.size):
-        state[i] = (
-            first * ends[0, i]
-            + first_rates * ends[1, i]
-            + last * ends[2, i]
-            + last_rates * ends[3, i]
-        )
 
 
 @kernel

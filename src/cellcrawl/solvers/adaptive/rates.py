@@ -19,18 +19,14 @@ from cellcrawl.physics.laws import (
     binding_rate,
     driving_force,
     edge_velocity,
-    friction_slope,
 )
 from cellcrawl.solvers.adaptive.staggered import (
-    DIFFERENCE_PEAK,
     HALO,
-    SECOND_DIFFERENCE_PEAK,
     cell_mean,
     central_difference,
     difference_ahead,
     difference_behind,
     fill_halo,
-    largest,
     mean_ahead,
     mean_behind,
     running_sum,
@@ -75,8 +71,8 @@ def velocities(
     """Solve the force balance at the midpoints; False where it has no root.
 
     Leaves ``log r`` in ``y``, shape (nodes,), and in the rows of ``work``, which have halos: ``U``,
-    ``kappa U`` and ``r_on (1 - n) - r n``. Row `RATE` must hold ``exp(y)``, where `stiffness` puts
-    it.
+    ``kappa U`` and ``r_on (1 - n) - r n``. Row `RATE` must hold ``exp(y)``, where `renew_rates`
+    puts it.
     """
     nodes = y.size
     per_spacing = nodes / length
@@ -167,33 +163,8 @@ def rates(
 
 
 @kernel
-def stiffness(
-    state: np.ndarray, y: np.ndarray, edge: np.ndarray, work: np.ndarray
-) -> tuple[float, float]:
-    """Bound on the fastest decay, and the decay of the tension by itself.
-
-    Diffusion and shape, or the tension, each with the reaction. ``y`` must belong to ``state``.
-    Renews ``r = exp(y)`` in row `RATE` of ``work``.
-    """
-    nodes = y.size
-    span = nodes + 2 * HALO
-    n, scalars = state[span : 2 * span], state[2 * span :]
-    per_spacing = nodes / scalars[LENGTH]
-    r_on, zeta_1, epsilon, h = edge[0], edge[1], edge[3], edge[4]
-    reaction, yielding, shape, diffusion = work[0], work[1], work[2], work[3]
+def renew_rates(y: np.ndarray, work: np.ndarray) -> None:
+    """Make ``r = exp(y)`` in row `RATE` of ``work`` anew."""
     rate = work[RATE]
-    for i in range(np.uint64(nodes)):
-        j = i + _HALO
-        r = exponential(y[i])
-        rate[i] = r
-        slope = friction_slope(y[i], r, n[j], zeta_1[i])
-        share = r * (1.0 + y[i]) / slope  # d(r log r) / dF: how much of a force becomes flow
-        slip = n[j] * r * zeta_1[i] * y[i] / slope  # fewer linkers, faster unbinding
-        reaction[j] = abs(r_on[i] + r - slip)
-        yielding[j] = epsilon[i] * share
-        shape[j] = epsilon[i] * share * h[i]
-        diffusion[j] = edge[2, i]
-    grid = largest(diffusion, nodes) * SECOND_DIFFERENCE_PEAK
-    grid += largest(shape, nodes) * abs(scalars[TENSION]) * DIFFERENCE_PEAK**2
-    tension = edge[TENSION_RATE, 0] * total(yielding, nodes) / per_spacing
-    return max(grid * per_spacing**2, tension) + largest(reaction, nodes), tension
+    for i in range(np.uint64(y.size)):
+        rate[i] = exponential(y[i])

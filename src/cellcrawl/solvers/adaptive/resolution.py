@@ -39,6 +39,7 @@ _DOUBLE_DIFFERENCES = 5
 _FORMED = 0.1  # spread of the bound fraction along the edge of a formed cell
 _AMPLIFIED = 30.0  # care with the steps before (measured)
 _FLAT = 1e-6  # slopes below this are as good as none
+_ROUNDING = 1e-13  # waves smaller than this are as good as none
 _HALO = np.uint64(HALO)
 _1 = np.uint64(1)
 
@@ -98,6 +99,7 @@ def spectrum(angle: np.ndarray, bound: np.ndarray) -> np.ndarray:
     """
     k = np.arange(angle.size // 2 + 1)
     waves = np.abs(np.fft.rfft(np.stack([angle, bound]), axis=1)) / angle.size
+    waves[waves < _ROUNDING] = 0.0
     return np.asarray(k * np.hypot(waves[0], waves[1]) * math.sqrt(2.0))
 
 

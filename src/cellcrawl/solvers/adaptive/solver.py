@@ -8,14 +8,15 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cellcrawl.errors import InputError
-from cellcrawl.parameters import EDGE_ROWS, Conditions
-from cellcrawl.solvers.adaptive import chebyshev, resolution, stabilised
-from cellcrawl.solvers.adaptive import drive as drive
+from cellcrawl.parameters import Conditions
+from cellcrawl.solvers.adaptive import drive, resolution
 from cellcrawl.solvers.adaptive import state as layout
-from cellcrawl.solvers.adaptive.frame import Shape, frame, instant, shape_within_step
-from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, stiffness
-from cellcrawl.solvers.adaptive.scheme import Scheme, fourth_order_scheme
+from cellcrawl.solvers.adaptive.differences import DIFFERENCES
+from cellcrawl.solvers.adaptive.frame import Shape, frame, instant, shape_between
+from cellcrawl.solvers.adaptive.newton import MATRIX_ROWS
+from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, renew_rates
 from cellcrawl.solvers.adaptive.staggered import HALO
+from cellcrawl.solvers.adaptive.step_error import relative_size
 from cellcrawl.solvers.base import Breakdown, Frame, Instant, Solver
 from cellcrawl.starts.base import CellState
 from cellcrawl.validation import real_number, whole_number
@@ -24,13 +25,12 @@ _STEPS_PER_CALL = 5000  # between two looks at Ctrl-C
 _START_NODES = 1024
 _USUAL_RTOL = 1e-4
 _TIGHT_RTOL = 1e-6  # below it a start is sampled more finely
-_STIFF_TENSION = 0.5  # share of the tension in the fastest decay from which second order is better
-_STIFF_TENSION_RTOL = 3e-6  # down to this tolerance
+_FIRST_STEP = 0.2  # times the root of the tolerance, relative to the rate of change
 _SPATIAL_SHARE = 0.005  # of what the grid misses, in the error at t = 5
 
 
 class AdaptiveSolver(Solver):
-    """Tenth order in space on a staggered grid, error-controlled stabilised steps in time.
+    """Tenth order in space on a staggered grid, backward differentiation of order 1 to 5 in time.
 
     ``rtol`` is the error asked of length, tension and area (relative) and of position (over the
     radius) after a few units of time. The node count follows the state's spectrum.
@@ -65,10 +65,8 @@ class AdaptiveSolver(Solver):
         self._counters = np.zeros(drive.COUNTERS, np.int64)
         self._tally = np.zeros(4)  # fewest nodes, most nodes, regrids, largest closure error
         self._control[drive.TIME] = self._control[drive.PREVIOUS_TIME] = time
-        self._edges: tuple[float, np.ndarray] | None = None
         self._measured: tuple[float, Shape] | None = None
         self._counters[drive.RESTARTING] = 1
-        self._counters[drive.ORDER] = stabilised.ORDER
         if start is not None:
             self._begin(start)
 
@@ -93,31 +91,27 @@ class AdaptiveSolver(Solver):
         while self.time < target:
             now = self.time
             end = self._conditions.next_break(now)
-            if self._counters[drive.RESTARTING] and not self._restart(end):
+            if self._counters[drive.RESTARTING] and not self._restart():
                 return self._no_root(now)
             code = drive.run(
                 target,
                 end,
-                self._local_tolerance(),
-                int(self._counters[drive.ORDER]),
+                _local_tolerance(self._rtol),
                 _STEPS_PER_CALL,
                 _grid_tolerance(self._rtol),
                 (self._min_nodes, self._max_nodes),
                 self._control,
                 self._counters,
-                self._states,
+                self._table,
                 self._log_rate,
-                self._rows(now, end),
-                *self._scheme(),
-                self._mixed,
+                *self._edge(now, end),
+                self._matrix,
                 self._work,
             )
             if code == drive.AT_BREAK:
                 self._counters[drive.RESTARTING] = 1
             elif code == drive.CHECK_NODES:
-                breakdown = self._fit_grid()
-                if breakdown is not None:
-                    return breakdown
+                self._fit_grid()
             elif code in (drive.NO_ROOT, drive.STEP_TOO_SMALL, drive.UNRESOLVED):
                 return self._stuck(code)
         return None
@@ -136,8 +130,8 @@ class AdaptiveSolver(Solver):
         first, last = self._control[drive.PREVIOUS_TIME], self.time
         if not first <= time <= last:
             raise ValueError(f"t = {time} is not within the last step, from {first} to {last}")
-        part = (time - first) / (last - first) if time < last else 1.0
-        shape = shape_within_step(part, last - first, self._states[drive.PREVIOUS : drive.TRIAL])
+        steps = (time - last) / self._control[drive.STEP]
+        shape = shape_between(steps, int(self._counters[drive.ORDER]), self._table)
         self._tally[3] = max(self._tally[3], shape.closure_error)
         self._measured = (time, shape)
         return shape
@@ -147,18 +141,18 @@ class AdaptiveSolver(Solver):
             "control": self._control.copy(),
             "counters": self._counters.copy(),
             "tally": self._tally.copy(),
-            "states": self._states[: drive.TRIAL].copy(),
+            "differences": self._table[:DIFFERENCES].copy(),
             "log_rate": self._log_rate.copy(),
+            "matrix": self._matrix.copy(),
         }
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
+        self._hold(np.array(checkpoint["differences"], dtype=float))
         self._control = np.array(checkpoint["control"], dtype=float)
         self._counters = np.array(checkpoint["counters"], dtype=np.int64)
         self._tally = np.array(checkpoint["tally"], dtype=float)
-        self._hold(np.array(checkpoint["states"], dtype=float))
         self._log_rate = np.array(checkpoint["log_rate"], dtype=float)
-        current = self._states[drive.CURRENT]
-        stiffness(current, self._log_rate, self._midpoints(self.time), self._work)
+        self._matrix = np.array(checkpoint["matrix"], dtype=float)
 
     def options(self) -> dict[str, Any]:
         return {
@@ -174,6 +168,7 @@ class AdaptiveSolver(Solver):
             "steps": int(self._counters[drive.STEPS]),
             "rejected_steps": int(self._counters[drive.REJECTED]),
             "right_hand_sides": int(self._counters[drive.RATES]),
+            "factorisations": int(self._counters[drive.FACTORINGS]),
             "fewest_nodes": int(fewest),
             "most_nodes": int(most),
             "regrids": int(regrids),
@@ -199,97 +194,68 @@ class AdaptiveSolver(Solver):
                 f"the start needs more than max_nodes = {self._max_nodes} at rtol = "
                 f"{self._rtol:g}: raise max_nodes or rtol, or use a smoother start"
             )
-        self._hold(np.tile(layout.from_cell(start, nodes), (drive.TRIAL, 1)))
+        differences = np.zeros((DIFFERENCES, layout.size(nodes)))
+        differences[0] = layout.from_cell(start, nodes)
+        self._hold(differences)
         self._log_rate = np.full(nodes, math.log(self._conditions.at(self.time).r_p))
-        if not self._restart(self._conditions.next_break(self.time)):
+        if not self._restart():
             raise InputError(
                 "the start has no off-rate r >= 1 that balances the forces everywhere: "
                 "use a smoother or less tense start"
             )
 
-    def _hold(self, states: np.ndarray) -> None:
-        """Take up states PREVIOUS to CURRENT_RATES and make room for the work on them."""
+    def _hold(self, differences: np.ndarray) -> None:
+        """Take up the differences of the state and make room for the work on them."""
         self._measured = None
-        nodes = layout.nodes_of(states)
-        self._states = np.zeros((stabilised.STATE_ROWS, layout.size(nodes)))
-        self._states[: drive.TRIAL] = states
+        nodes = layout.nodes_of(differences)
+        self._table = np.zeros((drive.TABLE_ROWS, layout.size(nodes)))
+        self._table[:DIFFERENCES] = differences
         self._work = np.zeros((WORK_ROWS, nodes + 2 * HALO))
-        self._mixed = np.zeros((len(EDGE_ROWS) + 1, nodes))
-        self._edges = None
+        self._matrix = np.zeros((MATRIX_ROWS, nodes))
+        self._control[drive.FACTORED] = 0.0
+        self._edges: tuple[float, np.ndarray] | None = None
         self._tally[0] = min(self._tally[0] or nodes, nodes)
         self._tally[1] = max(self._tally[1], nodes)
 
-    def _restart(self, end: float) -> bool:
+    def _restart(self) -> bool:
         """Take the rates under the parameters that hold now, and begin with a short step."""
-        if not self._take_rates():
+        table, control, counters = self._table, self._control, self._counters
+        nodes = layout.nodes_of(table)
+        renew_rates(self._log_rate, self._work)
+        table[1:] = 0.0
+        counters[drive.RATES] += 1
+        if not rates(table[0], table[1], self._log_rate, self._midpoints(self.time), self._work):
             return False
-        control = self._control
-        control[drive.STEP] = 1.0 / control[drive.RADIUS]
-        control[drive.LAST_ERROR] = 1.0
-        _, control[drive.CONTRAST] = resolution.missed(
-            self._states[drive.CURRENT], layout.nodes_of(self._states), self._work
-        )
-        control[drive.FORMATION] = resolution.formation(
-            layout.bound_with_halo(self._states[drive.CURRENT]), layout.nodes_of(self._states)
-        )
-        self._counters[drive.RESTARTING] = 0
+        _, control[drive.CONTRAST] = resolution.missed(table[0], nodes, self._work)
+        control[drive.FORMATION] = resolution.formation(layout.bound_with_halo(table[0]), nodes)
+        pace = relative_size(table[1], table[0], nodes, 1.0)
+        control[drive.STEP] = _FIRST_STEP * math.sqrt(_local_tolerance(self._rtol)) / (1.0 + pace)
+        table[1] *= control[drive.STEP]
+        control[drive.CONTRACTION] = drive.UNKNOWN_CONTRACTION
+        control[drive.FACTORED] = 0.0
+        counters[drive.ORDER] = 1
+        counters[drive.EQUAL_STEPS] = counters[drive.RESTARTING] = 0
         return True
 
-    def _take_rates(self) -> bool:
-        edge = self._midpoints(self.time)
-        current, trial = self._states[drive.CURRENT], self._states[drive.TRIAL]
-        self._counters[drive.RATES] += 1
-        stiffness(current, self._log_rate, edge, self._work)
-        if not rates(current, trial, self._log_rate, edge, self._work):
-            return False
-        self._states[drive.CURRENT_RATES] = trial
-        self._control[drive.RADIUS], self._control[drive.TENSION_DECAY] = stiffness(
-            current, self._log_rate, edge, self._work
-        )
-        self._choose_order()
-        return True
-
-    def _rows(self, now: float, end: float) -> np.ndarray:
-        """Parameters at the midpoints: once where they hold still, else over the next step."""
+    def _edge(self, now: float, end: float) -> tuple[np.ndarray, bool]:
+        """Parameters at the midpoints at the end of the next step, and whether they are moving."""
         if not self._conditions.varies(now, end):
             if self._edges is None or self._edges[0] != end:
-                self._edges = (end, self._midpoints(now)[None])
-            return self._edges[1]
-        control = self._control
-        h = drive.bounded_step(
-            control[drive.STEP], now, end, control[drive.RADIUS], self._scheme().limits
-        )
-        times = [now, now + h / 3.0, now + 2.0 * h / 3.0, now + h]
-        if h == end - now:
-            times[-1] = math.nextafter(end, -math.inf)  # a jump at the end has not happened yet
-        return np.stack([self._midpoints(time) for time in times])
+                self._edges = (end, self._midpoints(now))
+            return self._edges[1], False
+        h = drive.bounded_step(self._control[drive.STEP], now, end)
+        then = math.nextafter(end, -math.inf) if h == end - now else now + h
+        return self._midpoints(then), True  # a jump at the end has not happened yet
 
     def _midpoints(self, time: float) -> np.ndarray:
         """Local parameters at the midpoints and G, shape (8, nodes)."""
-        nodes = layout.nodes_of(self._states)
+        nodes = layout.nodes_of(self._table)
         local = self._conditions.edge(time, 2 * nodes)[:, 1::2]
         return np.vstack([local, np.full(nodes, self._conditions.tension_rate(time))])
 
-    def _scheme(self) -> Scheme:
-        if self._counters[drive.ORDER] == chebyshev.ORDER:
-            return chebyshev.chebyshev_scheme()
-        return fourth_order_scheme()
-
-    def _choose_order(self) -> None:
-        """Second order where the tension is the stiffest and the tolerance loose, else fourth."""
-        tension, radius = self._control[drive.TENSION_DECAY], self._control[drive.RADIUS]
-        stiff = tension > _STIFF_TENSION * radius and self._rtol >= _STIFF_TENSION_RTOL
-        self._counters[drive.ORDER] = chebyshev.ORDER if stiff else stabilised.ORDER
-
-    def _local_tolerance(self) -> float:
-        """Local error that leaves a global error of about ``rtol`` at t = 5 (measured)."""
-        if self._counters[drive.ORDER] == chebyshev.ORDER:
-            return float((10.0 * self._rtol) ** 1.5)
-        return float(10.0 * self._rtol * (self._rtol / 1e-4) ** 0.15)
-
-    def _fit_grid(self) -> Breakdown | None:
+    def _fit_grid(self) -> None:
         """Go on with as many nodes as the spectrum asks for."""
-        state = self._states[drive.CURRENT]
+        state = self._table[0]
         nodes = layout.nodes_of(state)
         allowed = resolution.allowance(_grid_tolerance(self._rtol), self._control[drive.CONTRAST])
         waves = resolution.spectrum(layout.angle(state), layout.bound(state))
@@ -297,12 +263,20 @@ class AdaptiveSolver(Solver):
         wanted = resolution.wanted_nodes(waves, nodes, allowed, self._min_nodes, self._max_nodes)
         wanted = min(wanted, self._max_nodes)
         if wanted != nodes:
-            self._hold(layout.regridded(self._states[: drive.TRIAL], wanted))
+            self._hold(layout.regridded(self._table[:DIFFERENCES], wanted))
             self._log_rate = layout.resampled_midpoints(self._log_rate, wanted)
             self._tally[2] += 1
-            if not self._take_rates():
-                return self._no_root(self.time)
-        return None
+            edge = self._midpoints(self.time)
+            self._counters[drive.RATES] += 1
+            drive.bend_history(
+                self._control,
+                self._counters,
+                self._table,
+                self._log_rate,
+                edge,
+                self._matrix,
+                self._work,
+            )
 
     def _no_root(self, time: float) -> Breakdown:
         return Breakdown(
@@ -333,3 +307,8 @@ class AdaptiveSolver(Solver):
 def _grid_tolerance(rtol: float) -> float:
     """Part of slopes of size 1 that a grid may miss for an error of ``rtol`` (measured)."""
     return float(0.32 * (28.6 * rtol) ** 0.625)
+
+
+def _local_tolerance(rtol: float) -> float:
+    """Local error that leaves a global error of about ``rtol`` at t = 5 (measured)."""
+    return float(0.08 * rtol * min(1.0, (rtol / 1e-4) ** 0.05))

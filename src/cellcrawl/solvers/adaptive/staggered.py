@@ -49,9 +49,6 @@ _I0, _I1, _I2, _I3, _I4 = (
     -27859.0 / 464486400.0,
 )
 
-SECOND_DIFFERENCE_PEAK: Final = -_D0 + 2.0 * (_D1 - _D2 + _D3 - _D4 + _D5)  # at the sawtooth
-DIFFERENCE_PEAK: Final = 2.0 * (_S1 - _S2 + _S3 - _S4 + _S5)
-
 
 @inlined_kernel
 def difference_ahead(a: np.ndarray, i: np.uint64) -> float:
@@ -183,18 +180,6 @@ def sum_of_squares(a: np.ndarray, nodes: int) -> float:
         s6 += a[i + 6] * a[i + 6]
         s7 += a[i + 7] * a[i + 7]
     return ((s0 + s1) + (s2 + s3)) + ((s4 + s5) + (s6 + s7))
-
-
-@kernel
-def largest(a: np.ndarray, nodes: int) -> float:
-    """Largest entry over the nodes, none of them negative, like `total`."""
-    s0 = s1 = s2 = s3 = 0.0
-    for i in range(HALO, HALO + nodes, 4):
-        s0 = a[i] if a[i] > s0 else s0
-        s1 = a[i + 1] if a[i + 1] > s1 else s1
-        s2 = a[i + 2] if a[i + 2] > s2 else s2
-        s3 = a[i + 3] if a[i + 3] > s3 else s3
-    return max(max(s0, s1), max(s2, s3))
 
 
 @kernel

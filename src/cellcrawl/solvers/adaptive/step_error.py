@@ -14,21 +14,19 @@ _TENSION_SCALE = 100.0
 
 
 @kernel
-def relative_size(
-    error: np.ndarray, state: np.ndarray, nodes: int, relief: float, contrast: float
-) -> float:
+def relative_size(error: np.ndarray, state: np.ndarray, nodes: int, contrast: float) -> float:
     """Root of the summed squares: angle and bound fraction in the mean, scalars relative.
 
     Angle and bound fraction count against ``contrast``, the size of the waves on the edge: while
-    small waves grow, so do their errors. The position counts against a radius of 1, the tension's
-    error is multiplied by ``relief``. Infinity when it is not a number.
+    small waves grow, so do their errors. The position counts against a radius of 1. Infinity when
+    the error is not a number.
     """
     span = nodes + 2 * HALO
     square = sum_of_squares(error[:span], nodes) + sum_of_squares(error[span:], nodes)
     square /= nodes * contrast**2
     e, u = error[2 * span :], state[2 * span :]
     square += (e[LENGTH] / u[LENGTH]) ** 2 + (e[AREA] / u[AREA]) ** 2
-    square += (relief * e[TENSION] / (abs(u[TENSION]) + _TENSION_SCALE)) ** 2
+    square += (e[TENSION] / (abs(u[TENSION]) + _TENSION_SCALE)) ** 2
     square += e[ORIGIN_X] ** 2 + e[ORIGIN_Y] ** 2
     size = math.sqrt(square)
     return size if size == size else np.inf

@@ -1,0 +1,179 @@
+"""The matrix of an implicit step: ``(1 - c J) change = residual``, nearly, in two sweeps.
+
+Kept of the Jacobian ``J`` is what is fast: reaction, diffusion and drift of the linkers, drift of
+the shape and its pull on its own curvature, all tridiagonal, and the one tension that couples every
+point of the edge, a row and a column. What is left out grows or decays no faster than the cell
+moves. Kernels use the paper's letters.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+
+from cellcrawl._compile import kernel
+from cellcrawl.physics.laws import friction_slope
+from cellcrawl.solvers.adaptive.rates import (
+    AREA,
+    LENGTH,
+    ORIGIN_X,
+    ORIGIN_Y,
+    RATE,
+    TENSION,
+    TENSION_RATE,
+)
+from cellcrawl.solvers.adaptive.staggered import HALO, difference_ahead, fill_halo
+from cellcrawl.solvers.cyclic import FACTOR_ROWS, factor_cyclic_tridiagonal, solve_factored
+
+# rows of a matrix: how U answers to n and to sigma, how n answers to sigma within a step, kappa
+BY_LINKERS, BY_TENSION, ANSWER, KAPPA, SCALARS = range(5)
+_LINKERS: Final = 5  # first row of the factors for n
+_SHAPE: Final = _LINKERS + FACTOR_ROWS  # and for the angle
+_SCRATCH: Final = _SHAPE + FACTOR_ROWS
+MATRIX_ROWS: Final = _SCRATCH + 3
+# A compact second difference, within 3 % of the tenth-order one for every wave on the grid
+_COMPACT: Final = 0.125
+_COMPACT_SCALE: Final = 1.0 + 2.0 * _COMPACT
+_SHAPE_SCALE: Final = 1.4  # of the plain one: 1.7 would fit the shortest waves, 1.0 the long ones
+_LEAST_PIVOT: Final = (
+    0.3  # where a reaction or the tension grows on its own; only the speed suffers
+)
+_HALO = np.uint64(HALO)
+_1 = np.uint64(1)
+
+
+@kernel
+def _blend(a: np.ndarray, out: np.ndarray) -> None:
+    """Left side of the compact second difference, applied to ``a``."""
+    last = a.size - 1
+    for i in range(_1, np.uint64(last)):
+        out[i] = a[i] + _COMPACT * (a[i - _1] + a[i + _1])
+    out[0] = a[0] + _COMPACT * (a[last] + a[1])
+    out[last] = a[last] + _COMPACT * (a[last - 1] + a[0])
+
+
+@kernel
+def _dot(a: np.ndarray, b: np.ndarray) -> float:
+    """Sum of products over the nodes, in eight interleaved parts."""
+    s0 = s1 = s2 = s3 = s4 = s5 = s6 = s7 = 0.0
+    for i in range(0, a.size, 8):
+        s0 += a[i] * b[i]
+        s1 += a[i + 1] * b[i + 1]
+        s2 += a[i + 2] * b[i + 2]
+        s3 += a[i + 3] * b[i + 3]
+        s4 += a[i + 4] * b[i + 4]
+        s5 += a[i + 5] * b[i + 5]
+        s6 += a[i + 6] * b[i + 6]
+        s7 += a[i + 7] * b[i + 7]
+    return ((s0 + s1) + (s2 + s3)) + ((s4 + s5) + (s6 + s7))
+
+
+@kernel
+def factor(
+    c: float,
+    state: np.ndarray,
+    y: np.ndarray,
+    edge: np.ndarray,
+    work: np.ndarray,
+    matrix: np.ndarray,
+) -> None:
+    """Make the matrix for a step with factor ``c``. ``y`` and ``work`` are as `rates` left them."""
+    nodes = y.size
+    span = nodes + 2 * HALO
+    w, n, scalars = state[:span], state[span : 2 * span], state[2 * span :]
+    per_spacing = nodes / scalars[LENGTH]
+    winding = 2.0 * math.pi / scalars[LENGTH]
+    sigma = scalars[TENSION]
+    by_linkers, by_tension, kappa = matrix[BY_LINKERS], matrix[BY_TENSION], matrix[KAPPA]
+    lower, diagonal, upper = matrix[_SCRATCH], matrix[_SCRATCH + 1], matrix[_SCRATCH + 2]
+    answer = matrix[ANSWER]
+    r_on, zeta_1, epsilon, h, rate = edge[0], edge[1], edge[3], edge[4], work[RATE]
+    pulled, loss, slide = work[0], work[1], work[3]
+    for i in range(np.uint64(nodes)):
+        j = i + _HALO
+        r, log_r = rate[i], y[i]
+        kappa[i] = winding + per_spacing * difference_ahead(w, j)
+        pull = 1.0 + kappa[i] * h[i]
+        yielding = 1.0 / friction_slope(log_r, r, n[j], zeta_1[i])
+        share = epsilon[i] * r * (1.0 + log_r) * yielding
+        slip = n[j] * r * yielding
+        by_linkers[i] = share * zeta_1[i] * log_r
+        by_tension[i] = -share * pull
+        loss[j] = max(1.0 + c * (r_on[i] + r - slip * zeta_1[i] * log_r), _LEAST_PIVOT)
+        lower[i] = -c * slip * pull
+        pulled[j] = max(share * sigma * h[i], 0.0)
+    _blend(lower, answer)
+    fill_halo(loss, nodes)
+    fill_halo(pulled, nodes)
+    diffusivity = edge[2]
+    spread = c * per_spacing**2 * _COMPACT_SCALE
+    carried = 0.25 * c * per_spacing
+    for i in range(np.uint64(nodes)):
+        j = i + _HALO
+        d = spread * diffusivity[i]
+        drift = carried * (slide[j] + slide[j + _1])
+        lower[i] = _COMPACT * loss[j - _1] - d + drift
+        upper[i] = _COMPACT * loss[j + _1] - d - drift
+        diagonal[i] = loss[j] + 2.0 * d
+    factor_cyclic_tridiagonal(lower, diagonal, upper, matrix[_LINKERS : _LINKERS + FACTOR_ROWS])
+    bend = c * per_spacing**2 * _SHAPE_SCALE
+    for i in range(np.uint64(nodes)):
+        j = i + _HALO
+        behind, ahead = bend * pulled[j - _1], bend * pulled[j]
+        drift = 2.0 * carried * slide[j]
+        lower[i], diagonal[i], upper[i] = drift - behind, 1.0 + behind + ahead, -drift - ahead
+    factor_cyclic_tridiagonal(lower, diagonal, upper, matrix[_SHAPE : _SHAPE + FACTOR_ROWS])
+    solve_factored(matrix[_LINKERS : _LINKERS + FACTOR_ROWS], answer)
+    pull_back = 0.0
+    for i in range(nodes):
+        pull_back += by_tension[i]
+    slope = pull_back + _dot(by_linkers, answer)
+    gain = c * edge[TENSION_RATE, 0] / per_spacing
+    matrix[SCALARS, 0] = gain
+    matrix[SCALARS, 1] = 1.0 / max(1.0 - gain * slope, _LEAST_PIVOT)
+    matrix[SCALARS, 2] = pull_back
+
+
+@kernel
+def solve(
+    c: float,
+    state: np.ndarray,
+    matrix: np.ndarray,
+    residual: np.ndarray,
+) -> None:
+    """Replace ``residual``, laid out like ``state``, by the change of state it asks for.
+
+    Its halos become 0.
+    """
+    nodes = matrix.shape[1]
+    span = nodes + 2 * HALO
+    per_spacing = nodes / state[2 * span + LENGTH]
+    w, n, scalars = residual[:span], residual[span : 2 * span], residual[2 * span :]
+    by_linkers, by_tension, kappa = matrix[BY_LINKERS], matrix[BY_TENSION], matrix[KAPPA]
+    answer, gain = matrix[ANSWER], matrix[SCALARS, 0]
+    bound, speed, angle = matrix[_SCRATCH], matrix[_SCRATCH + 1], matrix[_SCRATCH + 2]
+    _blend(n[HALO : HALO + nodes], bound)
+    solve_factored(matrix[_LINKERS : _LINKERS + FACTOR_ROWS], bound)
+    asked = gain * _dot(by_linkers, bound)
+    sigma = (scalars[TENSION] + asked) * matrix[SCALARS, 1]
+    for i in range(np.uint64(nodes)):
+        bound[i] += sigma * answer[i]
+        n[i + _HALO] = bound[i]
+        speed[i] = by_linkers[i] * bound[i] + by_tension[i] * sigma
+    angle[0] = w[HALO] - c * per_spacing * (speed[0] - speed[nodes - 1])
+    for i in range(_1, np.uint64(nodes)):
+        angle[i] = w[i + _HALO] - c * per_spacing * (speed[i] - speed[i - _1])
+    solve_factored(matrix[_SHAPE : _SHAPE + FACTOR_ROWS], angle)
+    for i in range(np.uint64(nodes)):
+        w[i + _HALO] = angle[i]
+    for k in range(HALO):
+        w[k] = n[k] = w[HALO + nodes + k] = n[HALO + nodes + k] = 0.0
+    growth = _dot(by_linkers, bound) + sigma * matrix[SCALARS, 2]
+    first = 0.5 * c * (speed[0] + speed[nodes - 1])
+    scalars[TENSION] += gain * growth  # sigma, written so that sigma - G A stays to rounding
+    scalars[AREA] += c * growth / per_spacing
+    scalars[LENGTH] += c * _dot(speed, kappa) / per_spacing
+    scalars[ORIGIN_X] += first * math.sin(state[HALO])
+    scalars[ORIGIN_Y] -= first * math.cos(state[HALO])
