@@ -12,7 +12,7 @@ import click
 from cellcrawl.command_line.options import say
 from cellcrawl.validation import one_of
 
-_KINDS = ("work-precision", "targets", "scaling", "startup")
+_KINDS = ("work-precision", "targets", "scaling", "startup", "modes")
 
 
 @click.command()
@@ -33,6 +33,7 @@ def bench(kind: str, quick: bool, output: Path | None) -> int:
       targets         the solver's targets: accuracy, speed by ratios
       scaling         cost against nodes and against the length of the run
       startup         import, first and second start from the shell
+      modes           how often the classifier is right
 
     Compare figures of one run only, and quote ratios: machines differ, and share their cores.
     CVODE takes part if scikit-sundae is installed, SciPy's solvers if SciPy is.
@@ -100,7 +101,19 @@ def _startup(quick: bool) -> _Result:
     return _Result({"starts": [row._asdict() for row in rows]}, None)
 
 
+def _modes(quick: bool) -> _Result:
+    from cellcrawl.bench import modes
+
+    kinds = list(_table(modes.Kind, modes.measure_kinds(quick)))
+    tracks, right = (sum(getattr(row, name) for row in kinds) for name in ("tracks", "right"))
+    say(f"{right} of {tracks} synthetic tracks named right ({right / tracks:.2%})")
+    points = list(_table(modes.Point, modes.measure_points(quick)))
+    data = {"kinds": [r._asdict() for r in kinds], "points": [r._asdict() for r in points]}
+    return _Result(data, modes.plot())
+
+
 _MEASURE = {
+    "modes": _modes,
     "work-precision": _work_precision,
     "targets": _targets,
     "scaling": _scaling,

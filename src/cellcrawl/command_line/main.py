@@ -21,6 +21,7 @@ _COMMANDS: Final[dict[str, tuple[str, str]]] = {
     "dispersion": ("theory", "Growth rates of every wavenumber, as a table and a picture."),
     "stability": ("theory", "Which wavenumbers grow where, over two parameters."),
     "reproduce": ("reproduce", "Make the figures and movies of the paper."),
+    "classify": ("classify", "Name the motility modes of runs and of tracks."),
     "plot": ("draw", "Draw a saved run."),
     "movie": ("draw", "Film a saved run."),
     "info": ("info", "Say what a file holds."),

@@ -29,6 +29,7 @@ def report_run(dataset: xr.Dataset) -> None:
         f"{diagnostics['wall_time']:.2f} s"
     )
     _report_motion(dataset)
+    _report_mode(dataset)
 
 
 def _report_motion(dataset: xr.Dataset) -> None:
@@ -48,6 +49,20 @@ def _report_motion(dataset: xr.Dataset) -> None:
         f"turned {math.degrees(turned[-1] - turned[0]):+.0f} degrees in all, "
         f"tension {tension.min():.0f} to {tension.max():.0f}"
     )
+
+
+def _report_mode(dataset: xr.Dataset) -> None:
+    from cellcrawl.modes import FEWEST_RECORDS, SHORTEST_RUN, classify
+
+    torn = dataset.attrs["status"] == "fragmented"
+    if not torn and dataset.sizes["time"] < FEWEST_RECORDS:
+        return
+    found = classify(dataset)
+    duration = float(dataset["time"][-1] - dataset["time"][0])
+    if not torn and duration < SHORTEST_RUN:
+        say(f"mode     {found.mode} so far; a run of {SHORTEST_RUN:g} or more can tell")
+    else:
+        say(f"mode     {found.mode}, confidence {found.confidence:.2f}: {found.summary()}")
 
 
 def exit_code(status: str) -> int:

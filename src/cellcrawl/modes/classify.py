@@ -19,12 +19,16 @@ from cellcrawl.validation import real_number
 
 FEWEST_RECORDS = 12
 """Fewer records than this cannot show a mode."""
+SHORTEST_RUN = 50.0
+"""Runs of the model shorter than this, in 1/k_off0, may not have come to their mode."""
 _LATER_STARTS = (0.0, 1 / 9, 2 / 9, 3 / 9)
 """Where the transient may end, as parts of what follows the onset."""
 _PREFER_EARLY = 0.3  # a start that leaves out the part p must fit better by this times p
+_FEW_TURNS = 3  # a track that has turned less often, and less than once round, may be any mode
+_UNTOLD = 0.6  # the confidence it can have
 
 
-def classify(dataset: xr.Dataset) -> Classification:
+def classify(dataset: xr.Dataset, *, use_size: bool = True) -> Classification:
     """Name the motility mode of a run.
 
     The same as `classify_track` of its centroid, with the cell's radius known.
@@ -33,21 +37,31 @@ def classify(dataset: xr.Dataset) -> Classification:
     ----------
     dataset : Dataset
         A run, of at least 12 records unless it tore.
+    use_size : bool
+        Whether the size of the cell counts; without it only the form of the track does.
 
     Returns
     -------
     Classification
+        "fragmented" for a run that tore, whatever it did before.
 
     Raises
     ------
     InputError
         If the dataset is no run, or has too few records.
+
+    Notes
+    -----
+    The modes are those of a cell left to itself: a schedule that changes parameters on the way
+    makes a track with several modes, which is "other". A run of less than about 50 may not have
+    come to its mode. A run that ended for another reason than its time is named by what there is.
     """
     run = records_with(dataset, "centroid_x", "centroid_y", "area")
     if run.attrs.get("status") == "fragmented":
         return _fragmented()
+    track = as_track(run, at_least=FEWEST_RECORDS)
     radius = math.sqrt(float(np.median(run["area"].values)) / math.pi)
-    return _classify(as_track(run, at_least=FEWEST_RECORDS), radius)
+    return _classify(track, radius if use_size else None)
 
 
 def classify_track(
@@ -74,6 +88,14 @@ def classify_track(
     ------
     InputError
         For a track that is too short, has values that are not finite, or times that do not rise.
+
+    Notes
+    -----
+    The rule is on the page "Motility modes" of the documentation. Records may be uneven in time.
+    Their interval must be short enough to show a turn, about a quarter of the time from one swing
+    to the next, and the noise of the positions is found from the track itself. Measures are taken
+    after the transient, which is found as well: the time to the onset of crawling and up to a
+    third of what follows.
     """
     if status == "fragmented":
         return _fragmented()
@@ -85,28 +107,29 @@ def classify_track(
 def _classify(track: Track, cell_radius: float | None) -> Classification:
     smoothed = smooth(track)
     still = measure_rest(track, smoothed.noise)
-    at_rest = max(rule.stationary(still, cell_radius), key=lambda condition: condition.fit)
+    at_rest = max(rule.stationary(still, cell_radius), key=_fit)
     if at_rest.fit >= 0.5:
         return Classification("stationary", at_rest.fit, {}, still, at_rest.words)
     first = onset(smoothed)
     left = smoothed.t.size - first
     starts = _LATER_STARTS if left > 2 * FEWEST_RECORDS else _LATER_STARTS[:1]
-    best, best_score = None, 0.0
-    for later in starts:
+    best = _apply_rule(smoothed, first, cell_radius)
+    best_score = _score(best, 0.0)
+    for later in starts[1:]:
         if best_score >= 1.0 - _PREFER_EARLY * later:
             break
         result = _apply_rule(smoothed, first + int(later * left), cell_radius)
-        score = result.confidence - _PREFER_EARLY * later if result.mode != "other" else 0.0
-        if best is None or score > best_score:
-            best, best_score = result, score
-    assert best is not None
+        if _score(result, later) > best_score:
+            best, best_score = result, _score(result, later)
+    clear = min(1.0 - at_rest.fit, rule.resolved(best.measures).fit)
     seen = replace(
-        best.measures,
-        extent=still.extent,
-        late_extent=still.late_extent,
-        disorder=still.disorder,
+        best.measures, extent=still.extent, late_extent=still.late_extent, disorder=still.disorder
     )
-    return replace(best, confidence=min(best.confidence, 1.0 - at_rest.fit), measures=seen)
+    return replace(best, confidence=min(best.confidence, clear), measures=seen)
+
+
+def _score(result: Classification, later: float) -> float:
+    return result.confidence - _PREFER_EARLY * later if result.mode != "other" else 0.0
 
 
 def _apply_rule(track: SmoothTrack, start: int, cell_radius: float | None) -> Classification:
@@ -116,18 +139,28 @@ def _apply_rule(track: SmoothTrack, start: int, cell_radius: float | None) -> Cl
         "rotational": rule.rotational(found, cell_radius),
         "zigzag": rule.zigzag(found),
     }
-    fits = {mode: min(c.fit for c in held) for mode, held in conditions.items()}
+    fits = {mode: min(map(_fit, held)) for mode, held in conditions.items()}
     mode = max(fits, key=lambda name: fits[name])
     if fits[mode] >= 0.5:
-        weakest = min(conditions[mode], key=lambda condition: condition.fit)
-        return Classification(mode, fits[mode], fits, found, weakest.words)
+        if mode == "rotational":
+            found = replace(found, period=2.0 * math.pi / abs(found.turning_rate))
+        weakest = min(conditions[mode], key=_fit)
+        doubt = weakest.words if weakest.fit < 1.0 else ""
+        return Classification(mode, fits[mode], fits, found, doubt)
     # The mode with most conditions held says best what is odd about the track.
     nearest = max(
-        conditions, key=lambda name: sum(c.fit for c in conditions[name]) / len(conditions[name])
+        conditions, key=lambda name: sum(map(_fit, conditions[name])) / len(conditions[name])
     )
-    broken = min(conditions[nearest], key=lambda condition: condition.fit)
-    return Classification("other", 1.0 - fits[mode], fits, found, f"not {nearest}: {broken.words}")
+    doubt = f"not {nearest}: {min(conditions[nearest], key=_fit).words}"
+    sure = 1.0 - fits[mode]
+    if found.swings < _FEW_TURNS and abs(found.turned) < 2.0 * math.pi:
+        sure, doubt = min(sure, _UNTOLD), "it turns too few times to tell"
+    return Classification("other", sure, fits, found, doubt)
+
+
+def _fit(condition: rule.Condition) -> float:
+    return condition.fit
 
 
 def _fragmented() -> Classification:
-    return Classification("fragmented", 1.0, {}, Measures(), "the cell tore")
+    return Classification("fragmented", 1.0, {}, Measures(), "it tore")

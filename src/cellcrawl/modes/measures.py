@@ -22,19 +22,18 @@ _ONSET = 0.5  # the cell has begun to crawl at this fraction of its later median
 def onset(track: SmoothTrack) -> int:
     """Return the first record at which the cell crawls at half its later median speed."""
     later = float(np.median(track.speed[track.speed.size // 2 :]))
-    return int(np.argmax(track.speed >= _ONSET * later))
+    return max(int(np.argmax(track.speed >= _ONSET * later)), track.unsure)
 
 
 def measure_rest(track: Track, noise: float) -> Measures:
     """Measure whether a cell moves at all, after the first quarter of the time."""
     after = int(np.searchsorted(track.t, track.t[0] + _FIRST_MOVES * track.duration))
     places = np.stack([track.x, track.y])
-    late = places[:, after:]
-    whole, extent = (float(np.ptp(part, axis=1).max()) for part in (places, late))
+    around = places[:, after:] - places[:, after:].mean(axis=1, keepdims=True)
+    whole, extent = _extent(places), _extent(places[:, after:])
     # Positions far from the origin carry their rounding.
     moves = extent > _ROUNDING * float(np.abs(places).max())
-    around = late - late.mean(axis=1, keepdims=True)
-    steps = np.diff(late, axis=1)
+    steps = np.diff(around, axis=1)
     return Measures(
         start=float(track.t[0]),
         speed=0.0,
@@ -45,21 +44,27 @@ def measure_rest(track: Track, noise: float) -> Measures:
     )
 
 
+def _extent(places: np.ndarray) -> float:
+    """Return the largest distance of positions (2, record) from their mean, twice."""
+    around = places - places.mean(axis=1, keepdims=True)
+    return 2.0 * float(np.sqrt(np.max(np.sum(around**2, axis=0))))
+
+
 def measure(track: SmoothTrack, first: int) -> Measures:
-    """Measure turns from record ``first`` on."""
-    heading = track.heading[first:] - track.heading[first]
-    times = track.t[first:]
+    """Measure turns from record ``first`` on, up to where the end makes the heading unsure."""
+    used = slice(first, track.t.size - track.unsure)
+    times, heading, x, y = (part[used] for part in (track.t, track.heading, track.x, track.y))
     smallest = max(SMALLEST_SWING, _NOISE_RANGE * min(track.heading_error, 1.0))
     swings = swings_of(heading, smallest)
     inner = _complete(swings)
-    turned = float(heading[-1])
     sizes = np.abs(inner.angle)
-    crossings = crossing_times(times, heading, inner)
+    intervals = np.diff(crossing_times(times, heading, inner))
     left, right = (_mean(sizes[inner.angle * sign > 0.0]) for sign in (1.0, -1.0))
-    path = float(np.sum(np.hypot(np.diff(track.x[first:]), np.diff(track.y[first:]))))
-    net = math.hypot(track.x[-1] - track.x[first], track.y[-1] - track.y[first])
+    turned = float(heading[-1] - heading[0])
     against = np.abs(swings.angle[swings.angle * turned < 0.0])
-    rate = turned / (times[-1] - times[0])
+    wander = _wander(times, heading)
+    path = float(np.sum(np.hypot(np.diff(x), np.diff(y))))
+    net = math.hypot(x[-1] - x[0], y[-1] - y[0])
     return Measures(
         start=float(times[0]),
         turned=turned,
@@ -68,14 +73,14 @@ def measure(track: SmoothTrack, first: int) -> Measures:
         widest_swing=max(left, right),
         one_sidedness=abs(left - right) / (left + right) if left + right > 0.0 else 0.0,
         counter_turn=float(against.max()) if against.size else 0.0,
-        evenness=_evenness(heading),
         angle_spread=_spread(sizes),
-        interval_spread=_spread(np.diff(crossings)),
-        wander=_wander(times, heading),
-        turning_rate=rate,
+        interval_spread=_spread(intervals),
+        wander=wander,
+        unevenness=wander / abs(turned) if turned else math.inf,
+        turning_rate=turned / float(times[-1] - times[0]),
         circling_radius=path / abs(turned) if turned else math.inf,
-        period=2.0 * _mean(np.diff(crossings)) if crossings.size > 1 else math.nan,
-        speed=float(np.median(track.speed[first:])),
+        period=2.0 * _mean(intervals) if intervals.size else math.nan,
+        speed=float(np.median(track.speed[used])),
         straightness=net / path if path > 0.0 else 0.0,
         noise=track.noise,
         heading_error=track.heading_error,
@@ -100,14 +105,6 @@ def _spread(values: np.ndarray) -> float:
         return 0.0
     mean = float(values.mean())
     return float(values.std(ddof=1)) / mean if mean > 0.0 else math.inf
-
-
-def _evenness(heading: np.ndarray) -> float:
-    """Return the smallest share of the net turn in a third of the time, over a third."""
-    at = np.linspace(0, heading.size - 1, 4).round().astype(int)
-    parts = np.diff(heading[at])
-    total = float(parts.sum())
-    return max(0.0, float((parts / total).min()) * 3.0) if total else 0.0
 
 
 def _wander(times: np.ndarray, heading: np.ndarray) -> float:

@@ -21,7 +21,7 @@ class Measures:
     turned : float
         Net change of heading, positive to the left.
     swings : int
-        How often the heading swings to one side and then the other.
+        How often the heading swings to one side or the other.
     swing : float
         Mean size of a swing, without the two cut off at the ends when there are others.
     widest_swing : float
@@ -30,13 +30,13 @@ class Measures:
         From 0, as much to the left as to the right, to 1, all to one side: of complete swings.
     counter_turn : float
         Largest swing against the net change of heading.
-    evenness : float
-        Smallest share of the net change of heading in a third of the time, over 1/3: 1 for a
-        circle, 0 when a third of the time has no turn.
     angle_spread, interval_spread : float
         Standard deviation over mean of the sizes of swings and of the times between them.
     wander : float
         Range of the heading around its straight line in time.
+    unevenness : float
+        That range over the net change of heading: 0 for a circle, 1/n for n equal turns at equal
+        times, 1 for a single turn.
     turning_rate : float
         Net change of heading over time, positive to the left.
     circling_radius : float
@@ -49,7 +49,7 @@ class Measures:
     straightness : float
         Net distance over path length.
     extent : float
-        Largest extent along x or y after the first quarter of the time.
+        Twice the largest distance from the mean position, after the first quarter of the time.
     late_extent : float
         The same over the extent of the whole track.
     disorder : float
@@ -68,10 +68,10 @@ class Measures:
     widest_swing: float = math.nan
     one_sidedness: float = math.nan
     counter_turn: float = math.nan
-    evenness: float = math.nan
     angle_spread: float = math.nan
     interval_spread: float = math.nan
     wander: float = math.nan
+    unevenness: float = math.nan
     turning_rate: float = math.nan
     circling_radius: float = math.nan
     period: float = math.nan
@@ -99,16 +99,36 @@ class Classification:
         How well gliding, rotational and zigzag each fit, from 0 to 1.
     measures : Measures
         What the rule looked at.
-    reason : str
-        The deciding measure, in words.
+    doubt : str
+        The condition that holds least, in words; "" if all hold fully.
     """
 
     mode: str
     confidence: float
     memberships: dict[str, float]
     measures: Measures
-    reason: str
+    doubt: str
 
     def as_row(self) -> dict[str, Any]:
         """Return mode, confidence and measures as one flat row of a table."""
-        return {"mode": self.mode, "confidence": self.confidence, **asdict(self.measures)}
+        row = {"mode": self.mode, "confidence": self.confidence, **asdict(self.measures)}
+        return {**row, "doubt": self.doubt}
+
+    def summary(self) -> str:
+        """Return what the mode was seen by, in a few words."""
+        told = self._told()
+        return "; but ".join(part for part in (told, self.doubt) if part)
+
+    def _told(self) -> str:
+        seen = self.measures
+        side = "left" if seen.turned > 0.0 else "right"
+        match self.mode:
+            case "gliding":
+                return f"turned {abs(math.degrees(seen.turned)):.0f} degrees in all"
+            case "rotational":
+                return f"turns {side} only, once round in {seen.period:.3g}"
+            case "zigzag":
+                swing = f"{seen.swings} swings of {math.degrees(seen.swing):.0f} degrees"
+                return f"{swing}, left and right in {seen.period:.3g}"
+            case _:
+                return ""

@@ -23,24 +23,24 @@ class Condition(NamedTuple):
 def stationary(found: Measures, cell_radius: float | None = None) -> list[Condition]:
     """Return the conditions of a cell at rest, of which any one is enough.
 
-    Of two positions at rest, the mean square distance is twice the variance of one along each
-    axis; a cell that moves comes far less far from one record to the next than in all.
+    Of positions without order, the mean square distance of successive ones is twice their variance;
+    on a path they are much nearer to each other than that.
     """
     conditions = [
         _above("its positions scatter without order", found.disorder, 1.0, 0.4),
-        _below("it stopped where it came to", found.late_extent, 0.02, 0.01),
+        _below("it came to rest", found.late_extent, 0.02, 0.01),
     ]
     if cell_radius is not None:
         moved = found.extent / cell_radius
-        conditions.append(_below("it moves less than its size", moved, 0.05, 0.03))
+        conditions.append(_below("it moves by less than its size", moved, 0.05, 0.03))
     return conditions
 
 
 def gliding(found: Measures) -> list[Condition]:
     """Return the conditions of "moves in a straight line with no turns"."""
     return [
-        _below("the heading wanders", found.wander, _rad(30.0), _rad(12.0)),
-        _below("it turns in all", abs(found.turned), _rad(60.0), _rad(30.0)),
+        _below("its heading wanders", found.wander, _rad(30.0), _rad(12.0)),
+        _below("it turns too far in all", abs(found.turned), _rad(60.0), _rad(30.0)),
     ]
 
 
@@ -50,34 +50,41 @@ def rotational(found: Measures, cell_radius: float | None = None) -> list[Condit
     Where the size of the cell is known, its centroid must go round a circle wider than the cell: a
     cell that spins within its own outline goes nowhere.
     """
-    spins = []
-    if cell_radius is not None:
-        spins = [
-            _above("it circles wider than itself", found.circling_radius / cell_radius, 1.0, 0.25)
-        ]
-    return [
-        *spins,
-        _above("it turns in all", abs(found.turned), _rad(60.0), _rad(30.0)),
-        _below("it turns back", found.counter_turn, _rad(45.0), _rad(20.0)),
-        _above("it turns throughout", found.evenness, 0.3, 0.25),
+    conditions = [
+        _above("it turns too little in all", abs(found.turned), _rad(60.0), _rad(30.0)),
+        _below("it turns back at times", found.counter_turn, _rad(45.0), _rad(20.0)),
+        _below("it turns by fits and starts", found.unevenness, 0.4, 0.24),
     ]
+    if cell_radius is not None:
+        circle = found.circling_radius / cell_radius
+        conditions.append(_above("it spins within its own outline", circle, 1.0, 0.25))
+    return conditions
 
 
 def zigzag(found: Measures) -> list[Condition]:
-    """Return the conditions of "turns alternatively between left and right"."""
+    """Return the conditions of "turns alternatively between left and right".
+
+    A swing of the heading by more than half a turn is no oscillation across a way ahead, but a
+    loop.
+    """
     return [
-        _above("swings", found.swings, 3.0, 1.5),
-        _above("size of a swing", found.swing, _rad(24.0), _rad(8.0)),
-        _below("widest swing", found.widest_swing, math.pi, _rad(20.0)),
-        _below("one-sidedness", found.one_sidedness, 0.4, 0.15),
-        _below("swings differ in size", found.angle_spread, 0.4, 0.15),
-        _below("swings differ in time", found.interval_spread, 0.4, 0.15),
+        _above("it swings too few times", found.swings, 3.0, 4.0),
+        _above("its swings are too small", found.swing, _rad(24.0), _rad(8.0)),
+        _below("its swings are loops", found.widest_swing, math.pi, _rad(20.0)),
+        _below("it swings more to one side", found.one_sidedness, 0.4, 0.15),
+        _below("its swings differ in size", found.angle_spread, 0.4, 0.25),
+        _below("its swings differ in time", found.interval_spread, 0.4, 0.25),
     ]
+
+
+def resolved(found: Measures) -> Condition:
+    """Return whether the heading is known well enough to tell."""
+    return _below("noise hides its heading", found.heading_error, 0.15, 0.1)
 
 
 def _above(words: str, value: float, threshold: float, width: float) -> Condition:
     fit = 0.5 + 0.5 * (value - threshold) / width
-    return Condition(words, min(1.0, max(0.0, fit)))
+    return Condition(words, min(1.0, max(0.0, float(fit))))
 
 
 def _below(words: str, value: float, threshold: float, width: float) -> Condition:

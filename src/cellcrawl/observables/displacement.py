@@ -47,7 +47,7 @@ def mean_squared_displacement(
     Windows overlap, so neighbouring values share most of their data: the curve looks far smoother
     than it is known, and a bend at long lags may mean nothing. The error falls with the number of
     *independent* windows, duration over lag, not with ``windows``; at a quarter of the duration it
-    is about 60 percent for Brownian motion, which is why longer lags are left out.
+    is about 45 percent for Brownian motion, which is why longer lags are left out.
     Localisation error ``s`` along each axis adds ``4 s**2`` at every lag and hides slow motion at
     short ones. At uneven times pairs are sorted into bins one median interval wide and the lag is
     their mean; no position is interpolated.

@@ -15,7 +15,7 @@ _WIDEST = 0.08  # of the duration: smoothing never goes beyond, or nothing would
 _ITERATIONS = 6
 _NARROWEST = 0.3  # of the sampling interval: narrower smoothing changes nothing
 _ROUGH = 1.5  # smoothing that removes more than this many times the noise removes motion
-_NORMAL = 1.4826  # standard deviation over median absolute deviation of a normal distribution
+_RAYLEIGH = 1.17741  # median distance in the plane over the standard deviation along an axis
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +43,11 @@ class SmoothTrack:
     width: float
     heading_error: float
 
+    @property
+    def unsure(self) -> int:
+        """How many records at each end are smoothed over fewer neighbours than the others."""
+        return min(round(2.0 * self.width / float(self.t[1] - self.t[0])), self.t.size // 4)
+
 
 def position_noise(track: Track) -> float:
     """Return the error of a recorded position, standard deviation along one axis.
@@ -59,8 +64,8 @@ def position_noise(track: Track) -> float:
         return 0.0
     weights = _neighbour_weights(track.t)
     scale = np.sqrt(1.0 + np.sum(weights**2, axis=0))
-    residuals = [_residual(values, weights) / scale for values in (track.x, track.y)]
-    return float(_NORMAL * np.median(np.abs(np.concatenate(residuals))))
+    apart = np.hypot(_residual(track.x, weights), _residual(track.y, weights)) / scale
+    return float(np.median(apart)) / _RAYLEIGH
 
 
 def smooth(track: Track) -> SmoothTrack:
@@ -86,7 +91,7 @@ def smooth(track: Track) -> SmoothTrack:
     while width > _NARROWEST * step and _removed(places, smoothed) > _ROUGH * noise:
         width *= 0.7
         smoothed = gaussian.smoothed(width / step)
-    velocity = np.gradient(smoothed, step, axis=1)
+    velocity = np.gradient(smoothed, step, axis=1, edge_order=2)
     speed = np.hypot(velocity[0], velocity[1])
     return SmoothTrack(
         even,
@@ -135,8 +140,9 @@ def _width_for(noise: float, step: float, pace: float, duration: float) -> float
 
 
 def _removed(places: np.ndarray, smoothed: np.ndarray) -> float:
-    """Return the typical distance along an axis by which smoothing moved the positions."""
-    return float(_NORMAL * np.median(np.abs(places - smoothed)))
+    """Return by how much smoothing moved the positions, as a deviation along an axis."""
+    moved = places - smoothed
+    return float(np.median(np.hypot(moved[0], moved[1]))) / _RAYLEIGH
 
 
 def _heading_error(noise: float, step: float, width: float, pace: float) -> float:
