@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import importlib
+import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from cellcrawl.reproduction.workplace import Workplace
+if TYPE_CHECKING:
+    from cellcrawl.reproduction.workplace import Workplace
 
 
 @dataclass(frozen=True)
@@ -42,10 +44,13 @@ class Recipe:
         make: Callable[[Workplace, str], list[str]] = self._module().make
         return make(workplace, self.name)
 
-    def source(self) -> str:
-        """Return a short hash of the recipe's own code: an edited recipe is made anew."""
-        text = Path(str(self._module().__file__)).read_bytes()
-        return hashlib.sha256(text).hexdigest()[:16]
+    def identity(self, *choices: Any) -> str:
+        """Return a hash of these choices, of the recipe and of the code that decides results."""
+        from cellcrawl.sweeps.identity import code_version
+
+        recipe = Path(str(self._module().__file__)).read_text("utf-8")
+        content = json.dumps([self.name, recipe, code_version(), *choices])
+        return hashlib.sha256(content.encode()).hexdigest()[:32]
 
     def _module(self) -> Any:
         return importlib.import_module(f"cellcrawl.reproduction.{self.module}")

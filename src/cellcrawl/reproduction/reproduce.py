@@ -5,15 +5,14 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from cellcrawl.errors import InputError
 from cellcrawl.reproduction.recipe import Recipe
 from cellcrawl.reproduction.registry import recipes_named
-from cellcrawl.reproduction.runs import content_hash
-from cellcrawl.reproduction.workplace import FORMATS, Workplace
-from cellcrawl.simulation.dataset import package_version
 from cellcrawl.validation import one_of, whole_number
+
+FORMATS: Final = ("png", "pdf", "svg")
 
 
 class Made(NamedTuple):
@@ -86,14 +85,15 @@ def _each(
     again: bool,
     progress: bool,
 ) -> Iterator[Made]:
+    from cellcrawl.reproduction.workplace import Workplace
+    from cellcrawl.simulation.dataset import package_version
+
     for recipe in recipes:
         began = clock.monotonic()
         place = Workplace(
             root, recipe.name, quick=quick, formats=formats, dpi=dpi, progress=progress
         )
-        identity = content_hash(
-            [recipe.name, recipe.source(), quick, formats, dpi, package_version()]
-        )
+        identity = recipe.identity(quick, formats, dpi)
         record = None if again else place.finished(identity)
         if record is not None:
             files = [root / path for path in record["files"]]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +10,10 @@ import xarray as xr
 from cellcrawl.errors import InputError, StorageError
 from cellcrawl.parameters import CONSTANT, Parameters, Schedule
 from cellcrawl.simulation import open_run, resume, simulate
-from cellcrawl.simulation.dataset import SCHEMA_VERSION, package_version
+from cellcrawl.simulation.description import RunDescription
 from cellcrawl.simulation.storage import RunStore
 from cellcrawl.starts import RandomPerturbation
+from cellcrawl.sweeps.identity import run_key
 
 
 def kept_run(
@@ -25,14 +24,14 @@ def kept_run(
     seed: int = 1,
     amplitude: float = 1e-4,
     save_every: float = 0.1,
-    schedule: Schedule | None = None,
+    schedule: Schedule = CONSTANT,
     nodes: int | None = None,
     **options: Any,
 ) -> xr.Dataset:
     """Return the run from a random start, from its file in ``folder`` if it is there.
 
-    The file's name ends in a hash of everything the run depends on: parameters, start, schedule,
-    solver options, times, version. A run that was interrupted goes on from where it was.
+    The file's name ends in the hash that names the run in a sweep: of parameters, start, schedule,
+    times, solver and code. A run that was interrupted goes on from where it was.
 
     Raises
     ------
@@ -41,28 +40,25 @@ def kept_run(
     StorageError
         If the file cannot be written, or an unreadable one is in the way and cannot be removed.
     """
-    plan = CONSTANT if schedule is None else schedule
     start = RandomPerturbation(seed=seed, amplitude=amplitude)
-    identity = {
-        "parameters": parameters.to_dict(),
-        "start": start.describe(),
-        "schedule": plan.to_dict(),
-        "nodes": nodes,
-        "options": options,
-        "t_end": float(t_end),
-        "save_every": float(save_every),
-        "version": package_version(),
-        "schema": SCHEMA_VERSION,
-    }
-    path = folder / f"{_label(parameters, seed)}-{content_hash(identity)[:10]}.nc"
-    run = _opened(path, float(t_end))
+    described = RunDescription(
+        parameters=parameters,
+        t_end=t_end,
+        start=start,
+        save_every=save_every,
+        nodes=nodes,
+        schedule=schedule,
+        options=options,
+    )
+    path = folder / f"{_label(parameters, seed)}-{run_key(described, 'fields')[:10]}.nc"
+    run = _opened(path, described.t_end)
     if run is None:
         folder.mkdir(parents=True, exist_ok=True)
         run = simulate(
             parameters,
             t_end,
             start=start,
-            schedule=plan,
+            schedule=schedule,
             save_every=save_every,
             nodes=nodes,
             output=path,
@@ -76,11 +72,6 @@ def kept_run(
     run.close()
     loaded.encoding["source"] = str(path)
     return loaded
-
-
-def content_hash(identity: Any) -> str:
-    """Return a hash of plain values, the same wherever they are equal."""
-    return hashlib.sha256(json.dumps(identity, sort_keys=True).encode()).hexdigest()
 
 
 def _opened(path: Path, t_end: float) -> xr.Dataset | None:

@@ -19,8 +19,7 @@ from cellcrawl.reproduction.runs import kept_run
 if TYPE_CHECKING:
     from cellcrawl.sweeps import Sweep
 
-FORMATS: Final = ("png", "pdf", "svg")
-_RECORD = "about.json"
+_RECORD: Final = "about.json"
 
 
 class Workplace:
