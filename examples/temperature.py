@@ -113,7 +113,7 @@ def main(folder: Path) -> None:
         speed = warm.scales.to_physical(float(cc.observables.speed(late).mean()), "velocity")
         print(
             f"{celsius:2d} °C: r_on = {at(celsius).r_on:4.1f}, r_p = {at(celsius).r_p:.1f}, "
-            f"{found.mode} ({found.reason}), {1e6 * speed:.3f} um/s"
+            f"{found.mode} ({found.summary()}), {1e6 * speed:.3f} um/s"
         )
     draw_walk(runs).savefig(folder / "walk.png", dpi=200)
     schedule, t_end, temperatures = heating()

@@ -79,8 +79,7 @@ def test_what_is_there_is_not_made_again(folder):
     assert second.reused
     assert second.found == first.found
     assert picture.stat().st_mtime_ns == before
-    assert not made("fig2", folder, again=True).reused
-    assert not made("fig2", folder, formats=["png", "svg"]).reused
+    assert not made("fig2", folder, again=True, formats=["png", "svg"]).reused
     assert (folder / "fig2" / "fig2.svg").exists()
 
 
