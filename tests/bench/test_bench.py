@@ -68,3 +68,23 @@ def test_results_are_valid_json_with_the_machine(tmp_path):
 def test_an_unknown_benchmark_is_one_line(capsys):
     assert run(["bench", "startupp"]) == 2
     assert "did you mean 'startup'" in capsys.readouterr().err
+
+
+def test_named_points_are_measured_as_they_are_and_with_less(monkeypatch):
+    from cellcrawl.bench import modes
+
+    monkeypatch.setattr(modes, "PAPER_MODES", {(56, 560): "gliding"})
+    rows = list(modes.measure_points(quick=True))
+    assert {row.most for row in rows} == {"gliding"}
+    assert all(row.agrees for row in rows)
+    assert {"as it is", "track alone", "to t = 50"} <= {row.condition for row in rows}
+
+
+def test_kinds_of_synthetic_tracks_are_counted():
+    from cellcrawl.bench import modes
+
+    rows = list(modes.measure_kinds(quick=True))
+    assert {row.mode for row in rows} == {"gliding", "rotational", "zigzag", "other", "stationary"}
+    for row in rows:
+        assert row.right + row.wrong_and_sure <= row.tracks
+        assert row.right >= 0.8 * row.tracks

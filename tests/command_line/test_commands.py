@@ -139,7 +139,10 @@ def test_mistakes_in_a_config_are_one_line(text, tmp_path, capsys):
     assert capsys.readouterr().err.count("\n") == 1
 
 
-@pytest.mark.parametrize("command", [[], ["simulate"], ["resume"], ["plot"], ["movie"], ["info"]])
+@pytest.mark.parametrize(
+    "command",
+    [[], ["simulate"], ["resume"], ["classify"], ["plot"], ["movie"], ["info"]],
+)
 def test_help_shows_an_example(command, capsys):
     assert run([*command, "--help"]) == 0
     assert "cellcrawl " in capsys.readouterr().out

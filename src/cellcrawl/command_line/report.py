@@ -52,17 +52,16 @@ def _report_motion(dataset: xr.Dataset) -> None:
 
 
 def _report_mode(dataset: xr.Dataset) -> None:
-    from cellcrawl.modes import FEWEST_RECORDS, SHORTEST_RUN, classify
+    from cellcrawl.modes import FEWEST_RECORDS, SHORTEST_RUN, classify, is_long_enough
 
     torn = dataset.attrs["status"] == "fragmented"
     if not torn and dataset.sizes["time"] < FEWEST_RECORDS:
         return
     found = classify(dataset)
-    duration = float(dataset["time"][-1] - dataset["time"][0])
-    if not torn and duration < SHORTEST_RUN:
-        say(f"mode     {found.mode} so far; a run of {SHORTEST_RUN:g} or more can tell")
-    else:
+    if torn or is_long_enough(dataset):
         say(f"mode     {found.mode}, confidence {found.confidence:.2f}: {found.summary()}")
+    else:
+        say(f"mode     {found.mode} so far; a run to t = {SHORTEST_RUN:g} or more can tell")
 
 
 def exit_code(status: str) -> int:

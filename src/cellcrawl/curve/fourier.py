@@ -40,15 +40,21 @@ def integral(samples: np.ndarray, period: float) -> np.ndarray:
     return np.asarray(result if np.iscomplexobj(samples) else result.real)
 
 
-def resample(samples: np.ndarray, count: int) -> np.ndarray:
-    """Values of the trigonometric interpolant of real samples at ``count`` equal steps."""
+def resample(samples: np.ndarray, count: int, ahead: float = 0.0) -> np.ndarray:
+    """Values of the trigonometric interpolant of real samples at ``count`` equal steps.
+
+    Along the last axis, of period 2 pi; the first value is ``ahead`` of the first sample.
+    """
+    size = samples.shape[-1]
     spectrum = np.fft.rfft(samples)
-    kept = min(samples.size, count) // 2 + 1
-    padded = np.zeros(count // 2 + 1, complex)
-    padded[:kept] = spectrum[:kept]
-    if min(samples.size, count) % 2 == 0 and samples.size != count:
-        padded[kept - 1] *= 0.5 if count > samples.size else 2.0
-    values: np.ndarray = np.fft.irfft(padded, count) * (count / samples.size)
+    kept = min(size, count) // 2 + 1
+    padded = np.zeros((*samples.shape[:-1], count // 2 + 1), complex)
+    padded[..., :kept] = spectrum[..., :kept]
+    if min(size, count) % 2 == 0 and size != count:
+        padded[..., kept - 1] *= 0.5 if count > size else 2.0
+    if ahead != 0.0:
+        padded *= np.exp(1j * ahead * np.arange(count // 2 + 1))
+    values: np.ndarray = np.fft.irfft(padded, count) * (count / size)
     return values
 
 

@@ -104,6 +104,12 @@ def classify_track(
     return _classify(as_track(t, x, y, at_least=FEWEST_RECORDS), cell_radius)
 
 
+def is_long_enough(dataset: xr.Dataset) -> bool:
+    """Whether a run of the model lasts `SHORTEST_RUN` and has the records to show its mode."""
+    times = dataset["time"].values
+    return times.size >= FEWEST_RECORDS and float(times[-1] - times[0]) >= SHORTEST_RUN
+
+
 def _classify(track: Track, cell_radius: float | None) -> Classification:
     smoothed = smooth(track)
     still = measure_rest(track, smoothed.noise)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.markers import MarkerStyle
 from matplotlib.path import Path
@@ -16,12 +17,13 @@ from cellcrawl.plot.mode_symbols import EDGE, MODE_SYMBOLS
 from cellcrawl.plot.style import PAGE, axes_or_new, figure_of
 from cellcrawl.plot.symbols import parameter_label
 from cellcrawl.sweeps import Sweep
-from cellcrawl.sweeps.planes import Plane, means, plane
+from cellcrawl.sweeps.planes import Plane, majority, means, plane
 
 _HEIGHT = 0.5 * PAGE
 _ABOVE = 3.0  # zorder: above a stability map
 _FILLS = 0.62  # of the space between points
 _SMALLEST, _LARGEST = 3.0, 9.0  # points
+_FAINT = 0.45  # of a mode's colour, for its region
 _ARC = 24  # vertices of a full pie
 
 
@@ -36,7 +38,9 @@ def diagram(
     """Draw which mode cells take up over two parameters.
 
     A point where all runs agree has the mode's colour and marker; one where they differ is a small
-    pie of the runs' modes, torn cells included.
+    pie of the runs' modes, torn cells included. Points that make no regular grid (see
+    `sweeps.refine`) are dots on regions in the colour of the mode of most runs at the nearest
+    point; where runs differ the dot is a pie.
 
     Parameters
     ----------
@@ -63,8 +67,10 @@ def diagram(
     with axes_or_new(ax, PAGE, _HEIGHT) as axes:
         if ax is None:
             _frame(axes, found)
-        size = _marker_size(axes, found)
-        _draw_points(axes, found, size)
+        if _is_regular(found):
+            _draw_points(axes, found, _marker_size(axes, found))
+        else:
+            _draw_regions(axes, found)
         axes.set_xlabel(parameter_label(found.x_name))
         axes.set_ylabel(parameter_label(found.y_name))
         if legend:
@@ -115,7 +121,7 @@ def measure_map(
     with axes_or_new(ax, 0.5 * PAGE, 0.4 * PAGE) as axes:
         across, up = np.unique(found.x), np.unique(found.y)
         drawn: Any
-        if across.size * up.size == found.x.size:
+        if _is_regular(found):
             tiles = values.reshape(across.size, up.size).T
             drawn = axes.pcolormesh(across, up, tiles, cmap="viridis", shading="nearest")
         else:
@@ -140,6 +146,24 @@ def _rows(sweep: Sweep) -> Any:
     if len(table) == 0:
         raise InputError(f"{sweep.path} has no rows yet: there is nothing to draw")
     return table
+
+
+def _is_regular(found: Plane) -> bool:
+    return np.unique(found.x).size * np.unique(found.y).size == found.x.size
+
+
+def _draw_regions(axes: Axes, found: Plane) -> None:
+    """Colour the finest lattice by the nearest point, and mark the points."""
+    across, i = np.unique(found.x, return_inverse=True)
+    up, j = np.unique(found.y, return_inverse=True)
+    colours = np.array([to_rgb(MODE_SYMBOLS[mode].colour) for mode in majority(found)])
+    tiles = np.empty((up.size, across.size, 3))
+    for row in range(up.size):
+        away = (np.arange(across.size)[:, None] - i) ** 2 + (row - j) ** 2
+        tiles[row] = colours[away.argmin(axis=1)]
+    faint = 1.0 - _FAINT * (1.0 - tiles)
+    axes.pcolormesh(across, up, faint, shading="nearest", zorder=_ABOVE - 1.0)
+    _draw_points(axes, found, 2.0 * _SMALLEST / 3.0, lone=1.0)
 
 
 def _frame(axes: Axes, found: Plane) -> None:
@@ -167,21 +191,22 @@ def _marker_size(axes: Axes, found: Plane) -> float:
     return min(max(_FILLS * min(spaces, default=_LARGEST), _SMALLEST), _LARGEST)
 
 
-def _draw_points(axes: Axes, found: Plane, size: float) -> None:
+def _draw_points(axes: Axes, found: Plane, size: float, lone: float | None = None) -> None:
+    """Draw each point; with ``lone``, those that agree as dots of that size."""
     runs = found.runs
     agreed = np.zeros(runs.size, dtype=bool)
     for mode, count in found.counts.items():
         whole = count == runs
         agreed |= whole
         symbol = MODE_SYMBOLS[mode]
-        scale = 0.85 if symbol.marker in ("D", "s") else 1.0
+        width = size * (0.85 if symbol.marker in ("D", "s") else 1.0)
         axes.scatter(
             found.x[whole],
             found.y[whole],
-            s=(scale * size) ** 2,
+            s=(width if lone is None else lone) ** 2,
             c=symbol.colour,
-            marker=symbol.marker,
-            linewidths=0.3,
+            marker=symbol.marker if lone is None else "o",
+            linewidths=0.3 if lone is None else 0.0,
             edgecolors=EDGE,
             zorder=_ABOVE,
         )

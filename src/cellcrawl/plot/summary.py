@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from cellcrawl.modes import classify, is_long_enough
 from cellcrawl.observables import front_position
 from cellcrawl.plot.inputs import drawable
 from cellcrawl.plot.kymograph import kymograph
@@ -60,7 +61,7 @@ def _has_front(run: xr.Dataset) -> bool:
 
 
 def describe(run: xr.Dataset) -> str:
-    """Return one line on a run: its main parameters, its seed and how it ended."""
+    """Return one line on a run: its main parameters, its seed, its mode and how it ended."""
     parameters = _parameters(run.attrs.get("parameters"))
     parts = [
         f"{symbol} = {parameters[name]:g}"
@@ -70,6 +71,8 @@ def describe(run: xr.Dataset) -> str:
     seed = run.attrs.get("seed", -1)
     if int(seed) >= 0:
         parts.append(f"seed {int(seed)}")
+    if run.attrs.get("status") == "completed" and is_long_enough(run):
+        parts.append(classify(run).mode)
     end = float(run["time"].values[-1])
     parts.append(f"{run.attrs.get('status', 'run')} at $t$ = {end:.4g}")
     return ",  ".join(parts)

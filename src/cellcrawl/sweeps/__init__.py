@@ -2,6 +2,7 @@
 
 from cellcrawl.sweeps.driver import sweep
 from cellcrawl.sweeps.grid import Grid
+from cellcrawl.sweeps.refine import refine
 from cellcrawl.sweeps.results import Sweep, open_sweep
 
-__all__ = ["Grid", "Sweep", "open_sweep", "sweep"]
+__all__ = ["Grid", "Sweep", "open_sweep", "refine", "sweep"]

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import concurrent.futures as futures
+import contextlib
 import itertools
 import time
 from array import array
 from collections import Counter, deque
 from pathlib import Path
-from typing import Any
+from types import TracebackType
+from typing import Any, Self
 
 from cellcrawl.errors import CellcrawlError
 from cellcrawl.simulation.description import RunDescription
@@ -99,26 +101,73 @@ def sweep(
     of a run do not depend on the number of workers, and are those of `simulate`.
     """
     asked = as_grid(grid, **settings)
-    one_of("keep", keep, KEEP)
-    if workers is not None:
-        whole_number("workers", workers, 1, 10_000)
     index, count = part or (0, 1)
     whole_number("part", count, 1)
     whole_number("part", index, 0, count - 1)
     driver = "sweep" if part is None else f"chunk-{index}-of-{count}"
-    store = SweepStore(output)
-    store.take(asked, keep, extend=extend)
-    with store.locked(driver):
-        store.recover_all(driver, rows_count=keep == "rows")
-        finished = store.finished(retry=retry)
-        mine = range(index, len(asked), count)
-        todo = Todo(asked, mine, keep, finished)
-        interrupted = False
-        if todo.left:
-            with executor_for(executor, workers, asked) as pool:
-                crew = Crew(store, pool, keep, driver)
-                interrupted = crew.work(todo, RunsBar(progress, len(mine), todo.left))
-    return Sweep(store.folder, interrupted=interrupted)
+    with Sweeping(output, asked, executor, workers, keep, driver, extend, retry) as at_work:
+        at_work.make(asked, range(index, len(asked), count), progress)
+        if part is None:
+            at_work.tidy()
+    return Sweep(at_work.store.folder, interrupted=at_work.interrupted)
+
+
+class Sweeping:
+    """A folder held by one driver, and its workers, started when first needed; a context."""
+
+    def __init__(
+        self,
+        output: str | Path,
+        grid: Grid,
+        executor: Any,
+        workers: int | None,
+        keep: str,
+        driver: str,
+        extend: bool = False,
+        retry: bool = False,
+    ) -> None:
+        one_of("keep", keep, KEEP)
+        if workers is not None:
+            whole_number("workers", workers, 1, 10_000)
+        self.store = SweepStore(output)
+        self.interrupted = False
+        self._keep = keep
+        self._driver = driver
+        self._retry = retry
+        self._given = executor, workers, grid
+        self._pool: futures.Executor | None = None
+        self._open = contextlib.ExitStack()
+        self.store.take(grid, keep, extend=extend)
+
+    def __enter__(self) -> Self:
+        with contextlib.ExitStack() as opened:
+            opened.enter_context(self.store.locked(self._driver))
+            self.store.recover_all(self._driver, rows_count=self._keep == "rows")
+            self._open = opened.pop_all()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._open.close()
+
+    def make(self, grid: Grid, which: range, progress: bool) -> None:
+        """Make those runs of a grid that have no row yet."""
+        todo = Todo(grid, which, self._keep, self.store.finished(retry=self._retry))
+        if not todo.left:
+            return
+        if self._pool is None:
+            self._pool = self._open.enter_context(executor_for(*self._given))
+        crew = Crew(self.store, self._pool, self._keep, self._driver)
+        self.interrupted = crew.work(todo, RunsBar(progress, len(which), todo.left))
+
+    def tidy(self) -> None:
+        """Put many small files of rows together, once all is done."""
+        if not self.interrupted:
+            self.store.merge(new_name(self._driver))
 
 
 class Todo:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, BinaryIO, Final
 
 from cellcrawl.errors import StorageError
 from cellcrawl.parameters import DESCRIPTIONS
@@ -67,29 +67,55 @@ def write_part(path: Path, rows: Sequence[dict[str, Any]]) -> None:
     import pyarrow as pa
     import pyarrow.parquet as parquet
 
+    columns = {name: [row.get(name) for row in rows] for name in COLUMNS}
+    with _replacing(path) as file:
+        parquet.write_table(pa.table(columns, schema()), file)
+
+
+def merge_parts(path: Path, parts: Sequence[Path]) -> None:
+    """Write the rows of several files as one, a file at a time in memory."""
+    import pyarrow.parquet as parquet
+
+    with _replacing(path) as file, parquet.ParquetWriter(file, schema()) as writer:
+        for part in parts:
+            writer.write_table(read_part(part).cast(schema()))
+
+
+@contextlib.contextmanager
+def _replacing(path: Path) -> Iterator[BinaryIO]:
+    """Give a file that gets its name when all is written; nothing is left of one that fails."""
     temporary = path.with_name(f".{path.name}.tmp")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        columns = {name: [row.get(name) for row in rows] for name in COLUMNS}
         with temporary.open("wb") as file:
-            parquet.write_table(pa.table(columns, schema()), file)
+            yield file
             file.flush()
             os.fsync(file.fileno())
         temporary.replace(path)
-    except OSError as error:
+    except BaseException as error:
         with contextlib.suppress(OSError):
             temporary.unlink(missing_ok=True)
-        raise cannot_write(path, error) from None
+        if isinstance(error, OSError) and not isinstance(error, StorageError):
+            raise cannot_write(path, error) from None
+        raise
 
 
 def read_part(path: Path, columns: Sequence[str] | None = None) -> pa.Table:
-    """Read a file of rows, or raise `StorageError` if it is damaged."""
+    """Read a file of rows, or raise `StorageError` if it is damaged.
+
+    Raises
+    ------
+    FileNotFoundError
+        If it has gone: its rows are in a merged file now.
+    """
     import pyarrow as pa
     import pyarrow.parquet as parquet
 
     try:
         with parquet.ParquetFile(path) as file:
             return file.read(columns=None if columns is None else list(columns))
+    except FileNotFoundError:
+        raise
     except (OSError, pa.ArrowException) as error:
         reason = " ".join(str(error).split())[:150]
         raise StorageError(

@@ -87,6 +87,19 @@ def plane(table: pa.Table, x: str | None = None, y: str | None = None) -> Plane:
     return Plane(x_name, y_name, places[:, 0], places[:, 1], counts)
 
 
+def majority(found: Plane) -> list[str]:
+    """Return the mode of most runs at each point, torn cells left out where there are others.
+
+    Of modes with as many runs, the first of `cellcrawl.modes.MODES`.
+    """
+    names = list(found.counts)
+    counts = np.array([found.counts[name] for name in names])
+    torn = np.array([name == "fragmented" for name in names])
+    others = counts[~torn].sum(axis=0) > 0
+    counts[np.ix_(torn, others)] = 0
+    return [names[k] for k in counts.argmax(axis=0)]
+
+
 def means(table: pa.Table, measure: str, x: str | None = None, y: str | None = None) -> np.ndarray:
     """Return the mean of a measure at the points of `plane`, without torn cells.
 

@@ -16,7 +16,7 @@ from cellcrawl.sweeps.axes import plain
 from cellcrawl.sweeps.grid import Grid
 from cellcrawl.sweeps.kept import read_kept
 from cellcrawl.sweeps.measures import MEASURES, described_columns
-from cellcrawl.sweeps.parts import COLUMNS, NOT_RUN, read_part, schema
+from cellcrawl.sweeps.parts import COLUMNS, NOT_RUN, schema
 from cellcrawl.sweeps.planes import varied
 from cellcrawl.sweeps.store import SweepStore
 from cellcrawl.validation import known_names
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 MISSING = "missing"
 """Status of a run that has no row yet."""
+_ROWS_AT_A_TIME = 1000
 _RESULTS = ("mode", *MEASURES, "end_time", "status", "message", "steps", "wall_time", "key")
 
 
@@ -105,7 +106,7 @@ class Sweep:
         wanted = list(COLUMNS) if columns is None else list(columns)
         known_names("the rows", wanted, COLUMNS)
         read = list(dict.fromkeys([*wanted, "key", "status"]))
-        tables = [read_part(path, read) for path in self._store.parts()]
+        tables = list(self._store.tables(read))
         if not tables:
             return schema().empty_table().select(wanted)
         table = pa.concat_tables(tables)
@@ -142,11 +143,12 @@ class Sweep:
     def rows(self) -> Iterator[dict[str, Any]]:
         """Yield the rows one by one, as plain dicts; memory stays flat."""
         seen: set[str] = set()
-        for path in self._store.parts():
-            for row in read_part(path).to_pylist():
-                if row["key"] not in seen:
-                    seen.add(row["key"])
-                    yield row
+        for table in self._store.tables():
+            for batch in table.to_batches(_ROWS_AT_A_TIME):
+                for row in batch.to_pylist():
+                    if row["key"] not in seen:
+                        seen.add(row["key"])
+                        yield row
 
     def run(self, **selection: Any) -> xr.Dataset:
         """Return what was kept of one run, as `simulate` would return it.

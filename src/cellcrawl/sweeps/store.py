@@ -6,18 +6,22 @@ import contextlib
 import json
 import os
 import uuid
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from cellcrawl.errors import InputError, StorageError
 from cellcrawl.sweeps.grid import Grid
 from cellcrawl.sweeps.identity import code_version
 from cellcrawl.sweeps.journal import read_journal
 from cellcrawl.sweeps.layout import Layout
-from cellcrawl.sweeps.parts import NOT_RUN, SUFFIX, cannot_write, read_part, write_part
+from cellcrawl.sweeps.parts import NOT_RUN, SUFFIX, cannot_write, merge_parts, read_part, write_part
+
+if TYPE_CHECKING:
+    import pyarrow as pa
 
 MANIFEST_SCHEMA: Final = 1
+_MANY_PARTS = 8
 KEEP: Final = ("rows", "tracks", "fields")
 
 
@@ -122,6 +126,12 @@ class SweepStore:
                 temporary.unlink(missing_ok=True)
             raise cannot_write(path, error) from None
 
+    def note_refinement(self, levels: int) -> None:
+        """Say in the manifest that rows between the grid's points belong here too."""
+        manifest = self.manifest()
+        if manifest.get("levels") != levels:
+            self._write_manifest({**manifest, "levels": levels})
+
     def parts(self) -> list[Path]:
         """Return the files of rows, in order of name."""
         rows = self.layout.rows
@@ -129,11 +139,19 @@ class SweepStore:
             return []
         return sorted(path for path in rows.glob(f"*{SUFFIX}") if not path.name.startswith("."))
 
+    def tables(self, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:
+        """Yield the rows file by file; those merged meanwhile are read where they are then."""
+        read: set[str] = set()
+        while unread := [path for path in self.parts() if path.name not in read]:
+            for path in unread:
+                with contextlib.suppress(FileNotFoundError):
+                    yield read_part(path, columns)
+                read.add(path.name)
+
     def finished(self, *, retry: bool = False) -> set[str]:
         """Return the keys of the runs that have a row; with ``retry``, of those with a result."""
         keys: set[str] = set()
-        for path in self.parts():
-            table = read_part(path, ("key", "status"))
+        for table in self.tables(("key", "status") if retry else ("key",)):
             found = table["key"].to_pylist()
             if retry:
                 statuses = table["status"].to_pylist()
@@ -144,6 +162,14 @@ class SweepStore:
                 ]
             keys.update(found)
         return keys
+
+    def merge(self, name: str) -> None:
+        """Make one file of many; killed in between, it leaves rows twice, which readers notice."""
+        parts = self.parts()
+        if len(parts) > _MANY_PARTS:
+            merge_parts(self.layout.part(name), parts)
+            for path in parts:
+                path.unlink(missing_ok=True)
 
     def recover(self, name: str, *, rows_count: bool) -> tuple[int, dict[str, int]]:
         """Turn what a dead worker's journal holds into a part.

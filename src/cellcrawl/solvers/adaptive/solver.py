@@ -244,14 +244,16 @@ class AdaptiveSolver(Solver):
                 self._edges = (end, self._midpoints(now))
             return self._edges[1], False
         h = drive.bounded_step(self._control[drive.STEP], now, end)
-        then = math.nextafter(end, -math.inf) if h == end - now else now + h
-        return self._midpoints(then), True  # a jump at the end has not happened yet
+        if h == end - now:
+            return self._midpoints(end, before=True), True
+        return self._midpoints(now + h), True
 
-    def _midpoints(self, time: float) -> np.ndarray:
+    def _midpoints(self, time: float, *, before: bool = False) -> np.ndarray:
         """Local parameters at the midpoints and G, shape (8, nodes)."""
         nodes = layout.nodes_of(self._table)
-        local = self._conditions.edge(time, 2 * nodes)[:, 1::2]
-        return np.vstack([local, np.full(nodes, self._conditions.tension_rate(time))])
+        local = self._conditions.edge(time, 2 * nodes, before=before)[:, 1::2]
+        rate = self._conditions.tension_rate(time, before=before)
+        return np.vstack([local, np.full(nodes, rate)])
 
     def _fit_grid(self) -> None:
         """Go on with as many nodes as the spectrum asks for."""

@@ -50,20 +50,12 @@ def winding(nodes: int) -> np.ndarray:
     return 2.0 * math.pi * np.arange(nodes) / nodes
 
 
-def shifted(samples: np.ndarray, part: float) -> np.ndarray:
-    """Periodic samples moved ahead by ``part`` of their spacing."""
-    nodes = samples.shape[-1]
-    k = np.arange(nodes // 2 + 1)
-    waves = np.fft.rfft(samples) * np.exp(2j * math.pi * part / nodes * k)
-    return np.asarray(np.fft.irfft(waves, nodes))
-
-
 def from_cell(cell: CellState, nodes: int) -> np.ndarray:
     """State of a cell on ``nodes`` nodes."""
     state = np.zeros(size(nodes))
     curve = cell.curve
     angle(state)[:] = fourier.resample(curve.theta - winding(curve.nodes), nodes)
-    bound(state)[:] = shifted(fourier.resample(cell.bound_fraction, nodes), 0.5)
+    bound(state)[:] = fourier.resample(cell.bound_fraction, nodes, math.pi / nodes)
     values = scalars(state)
     values[LENGTH], values[TENSION], values[AREA] = curve.length, cell.tension, curve.area
     values[ORIGIN_X : ORIGIN_X + 2] = curve.origin
@@ -73,13 +65,12 @@ def from_cell(cell: CellState, nodes: int) -> np.ndarray:
 def regridded(states: np.ndarray, nodes: int) -> np.ndarray:
     """Return a stack of states on another number of nodes, node 0 in place."""
     moved = np.zeros((len(states), size(nodes)))
-    for old, new in zip(states, moved, strict=True):
-        angle(new)[:] = fourier.resample(angle(old), nodes)
-        bound(new)[:] = resampled_midpoints(bound(old), nodes)
-        scalars(new)[:] = scalars(old)
+    angle(moved)[:] = fourier.resample(angle(states), nodes)
+    bound(moved)[:] = resampled_midpoints(bound(states), nodes)
+    scalars(moved)[:] = scalars(states)
     return moved
 
 
 def resampled_midpoints(samples: np.ndarray, nodes: int) -> np.ndarray:
     """Return samples at midpoints on another number of nodes."""
-    return shifted(fourier.resample(shifted(samples, -0.5), nodes), 0.5)
+    return fourier.resample(samples, nodes, math.pi / nodes - math.pi / samples.shape[-1])
