@@ -164,6 +164,7 @@ def plot() -> Figure:
             _draw(track, heading, run.sel(time=slice(found.measures.start, None)), run)
             if (r_on, zeta_1) in ((16, 600), (26, 600), (40, 540)):
                 heading.set_ylabel("heading (turns)")
+                track.set_ylabel("$y$ ($R_0$)")
             if paper == "other" and r_on != 38:
                 heading.set_xlabel("time")
     return figure

@@ -7,11 +7,8 @@ say where the measure misleads.
 """
 
 from cellcrawl.observables.asymmetry import front_rear_asymmetry, left_right_asymmetry
-from cellcrawl.observables.displacement import (
-    mean_distance,
-    mean_squared_displacement,
-    straightness,
-)
+from cellcrawl.observables.displacement import mean_squared_displacement
+from cellcrawl.observables.distance import mean_distance, straightness
 from cellcrawl.observables.fourier import fourier_amplitude
 from cellcrawl.observables.front import front_position
 from cellcrawl.observables.kymograph import kymograph
