@@ -7,7 +7,7 @@ import pytest
 
 import cellcrawl as cc
 from cellcrawl import sweeps
-from cellcrawl.sweeps import driver
+from cellcrawl.sweeps import worker
 from cellcrawl.sweeps.executors import InProcess
 from cellcrawl.sweeps.planes import majority, plane
 from cellcrawl.sweeps.worker import Outcome
@@ -41,7 +41,7 @@ def made(monkeypatch):
         mode = mode_of(run.parameters.r_on, run.parameters.zeta_1)
         return Outcome({"status": "completed", "mode": mode, "confidence": 1.0})
 
-    monkeypatch.setattr(driver.Crew.__init__, "__defaults__", (pretend,))
+    monkeypatch.setattr(worker, "execute", pretend)
     return runs
 
 

@@ -36,6 +36,13 @@ _PICTURE = "diagram.png"
     "--chunk", type=int, metavar="NUMBER", help="Make one part of the runs, from 0 (job arrays)."
 )
 @click.option("--of", "chunks", type=int, metavar="NUMBER", help="How many parts --chunk has.")
+@click.option(
+    "--refine",
+    "levels",
+    type=int,
+    metavar="TIMES",
+    help="Halve the spacing this often where the mode changes between neighbours.",
+)
 @click.option("--collect", is_flag=True, help="Make no runs; draw what the parts have left.")
 @click.option("--status", is_flag=True, help="Make no runs; say how far the sweep is.")
 @click.option("--extend", is_flag=True, help="Add these runs to a folder that has another grid.")
@@ -50,6 +57,7 @@ def sweep(
     t_end: float | None,
     chunk: int | None,
     chunks: int | None,
+    levels: int | None,
     collect: bool,
     status: bool,
     extend: bool,
@@ -76,6 +84,7 @@ def sweep(
     Examples
       cellcrawl sweep grid.toml
       cellcrawl sweep grid.toml --status
+      cellcrawl sweep coarse.toml --refine 3
       cellcrawl sweep grid.toml --dask tcp://node1:8786
       cellcrawl sweep grid.toml --chunk $SLURM_ARRAY_TASK_ID --of 200
       cellcrawl sweep grid.toml --collect
@@ -85,8 +94,8 @@ def sweep(
     folder = output or _folder(grid)
     if status or collect:
         found = sweeps.open_sweep(folder)
-        if not grid.is_dir():
-            found = sweeps.Sweep(folder, _read(grid, t_end))
+        if not grid.is_dir() and not found.is_of(_read(grid, t_end)):
+            say(f"note     {grid} has changed since: this is the grid that was swept")
         if collect:
             found.collect()
         _report(found)
@@ -103,17 +112,15 @@ def sweep(
                 f"tasks of the array so, as in --array=0-{chunks - 1}"
             )
         part = (chunk, chunks)
-    made = sweeps.sweep(
-        _read(grid, t_end),
-        folder,
-        dask,
-        workers=workers,
-        keep=keep,
-        extend=extend,
-        retry=retry,
-        part=part,
-        progress=wants_progress(),
-    )
+    shared: dict[str, Any] = {"workers": workers, "keep": keep, "progress": wants_progress()}
+    if levels is not None:
+        if part is not None or extend or retry:
+            raise InputError("--refine does not go with --chunk, --extend or --retry")
+        made = sweeps.refine(_read(grid, t_end), folder, dask, levels=levels, **shared)
+    else:
+        made = sweeps.sweep(
+            _read(grid, t_end), folder, dask, extend=extend, retry=retry, part=part, **shared
+        )
     _report(made)
     if made.interrupted:
         say("stopped  the rows above are saved; the same command goes on")
@@ -134,10 +141,10 @@ def _read(grid: Path, t_end: float | None) -> Any:
 
 def _report(found: Any) -> None:
     status = found.status()
-    say(f"grid     {found.grid.summary()}: {status.runs} runs")
+    say(f"grid     {found.grid.summary()}: {len(found.grid)} runs{_refined(found, status)}")
     left = status.runs - status.done
     at_work = ", a sweep is at work" if status.at_work else ""
-    say(f"done     {status.done}" + (f", {left} left{at_work}" if left else ""))
+    say(f"done     {status.done}" + (f", {left} left" if left else "") + at_work)
     if status.statuses:
         say(f"ended    {_counted(status.statuses)}")
     if status.modes:
@@ -145,6 +152,13 @@ def _report(found: Any) -> None:
     for reason, count in found.failures().items():
         say(f"failed   {count}: {reason}")
     say(f"rows     {found.path / 'rows'}")
+
+
+def _refined(found: Any, status: Any) -> str:
+    full = found.full_grid_runs()
+    if full is None:
+        return ""
+    return f", refined to {status.done} of the {full} of the full grid ({status.done / full:.0%})"
 
 
 def _counted(counts: dict[str, int]) -> str:

@@ -125,6 +125,7 @@ class Sweeping:
         driver: str,
         extend: bool = False,
         retry: bool = False,
+        execute: Execute | None = None,
     ) -> None:
         one_of("keep", keep, KEEP)
         if workers is not None:
@@ -134,6 +135,7 @@ class Sweeping:
         self._keep = keep
         self._driver = driver
         self._retry = retry
+        self._execute = execute or worker.execute
         self._given = executor, workers, grid
         self._pool: futures.Executor | None = None
         self._open = contextlib.ExitStack()
@@ -161,7 +163,7 @@ class Sweeping:
             return
         if self._pool is None:
             self._pool = self._open.enter_context(executor_for(*self._given))
-        crew = Crew(self.store, self._pool, self._keep, self._driver)
+        crew = Crew(self.store, self._pool, self._keep, self._driver, self._execute)
         self.interrupted = crew.work(todo, RunsBar(progress, len(which), todo.left))
 
     def tidy(self) -> None:
@@ -198,7 +200,7 @@ class Crew:
         pool: futures.Executor,
         keep: str,
         driver: str,
-        execute: Execute = worker.execute,
+        execute: Execute,
     ) -> None:
         self._store = store
         self._pool = pool

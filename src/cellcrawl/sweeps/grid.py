@@ -57,7 +57,7 @@ class Grid:
     (12, 600.0, 3)
     """
 
-    axes: Mapping[str, Sequence[Any]] = dataclasses.field(default_factory=dict)
+    axes: Mapping[str, Any] = dataclasses.field(default_factory=dict)
     points: Sequence[Mapping[str, Any]] = ()
     parameters: Parameters = dataclasses.field(default_factory=Parameters)
     start: Start = dataclasses.field(default_factory=RandomPerturbation)

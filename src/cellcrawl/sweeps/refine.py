@@ -91,7 +91,7 @@ def refine(
     x, y = _refined_axes(coarse, x, y)
     lattice = Lattice(coarse, x, y, levels)
     with Sweeping(output, coarse, executor, workers, keep, "sweep") as at_work:
-        at_work.store.note_refinement(levels)
+        at_work.store.note_refinement((x, y), levels)
         new: set[Place] = {corner for cell in lattice.cells for corner in cell.corners}
         while new and not at_work.interrupted:
             asked = lattice.runs_at(new)

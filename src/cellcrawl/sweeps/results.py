@@ -93,6 +93,10 @@ class Sweep:
         """What is kept: "rows", "tracks" or "fields"."""
         return str(self._manifest["keep"])
 
+    def is_of(self, grid: Grid) -> bool:
+        """Whether these are the results of ``grid``."""
+        return bool(self._manifest["digest"] == grid.digest)
+
     def table(self, columns: list[str] | None = None) -> pa.Table:
         """Return the rows there are, one a run, as a pyarrow Table.
 
@@ -184,11 +188,24 @@ class Sweep:
         table = self.table(["status", "mode"])
         modes = Counter(mode for mode in table["mode"].to_pylist() if mode is not None)
         statuses = Counter(table["status"].to_pylist())
-        runs = int(self._manifest["runs"])
-        done = len(table)
-        if done > 0 and self._manifest.get("extended"):
+        runs, done = int(self._manifest["runs"]), len(table)
+        if self._manifest.get("extended"):
             done = len(self._places(self.table()))
+        if "levels" in self._manifest:
+            runs = done
         return Status(runs, done, dict(statuses), dict(modes), self._store.is_locked())
+
+    def full_grid_runs(self) -> int | None:
+        """Return the runs of the full grid that a refined one stands for; None if it is none."""
+        if "levels" not in self._manifest:
+            return None
+        scale = 1 << int(self._manifest["levels"])
+        x, y = self._manifest["refined"]
+        runs = len(self.grid)
+        for name in (x, y):
+            coarse = len(self.grid.axes[name])
+            runs = runs // coarse * ((coarse - 1) * scale + 1)
+        return runs
 
     def failures(self, most: int = 5) -> dict[str, int]:
         """Return the commonest reasons of runs that did not end as the model allows."""

@@ -126,11 +126,12 @@ class SweepStore:
                 temporary.unlink(missing_ok=True)
             raise cannot_write(path, error) from None
 
-    def note_refinement(self, levels: int) -> None:
+    def note_refinement(self, axes: Sequence[str], levels: int) -> None:
         """Say in the manifest that rows between the grid's points belong here too."""
         manifest = self.manifest()
-        if manifest.get("levels") != levels:
-            self._write_manifest({**manifest, "levels": levels})
+        noted = {"refined": list(axes), "levels": levels}
+        if {name: manifest.get(name) for name in noted} != noted:
+            self._write_manifest({**manifest, **noted})
 
     def parts(self) -> list[Path]:
         """Return the files of rows, in order of name."""
