@@ -41,7 +41,7 @@ def test_mode_does_not_depend_on_units_place_orientation_or_side(mode, angle, le
 @pytest.mark.parametrize(("kind", "mode"), [(kind, mode) for kind, (mode, _) in RECIPES.items()])
 def test_synthetic_tracks_are_named_right(kind, mode):
     results = [
-        cc.classify_track(track.t, track.x, track.y) for track in synthetic_tracks(40, 5, (kind,))
+        cc.classify_track(track.t, track.x, track.y) for track in synthetic_tracks(25, 5, (kind,))
     ]
     wrong = [result for result in results if result.mode != mode]
     assert len(wrong) <= 2

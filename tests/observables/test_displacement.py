@@ -54,11 +54,11 @@ def test_stated_error_is_the_scatter_among_brownian_tracks():
     random = np.random.default_rng(2)
     t = np.arange(65.0)
     values = np.array(
-        [msd(t, *random.normal(size=(2, 65)).cumsum(axis=1), longest=64.0) for _ in range(800)]
+        [msd(t, *random.normal(size=(2, 65)).cumsum(axis=1), longest=64.0) for _ in range(500)]
     )
     stated = msd(t, *random.normal(size=(2, 65)), longest=64.0)["relative_error"].values
     scatter = values.std(axis=0) / (2.0 * np.arange(1, 65))
-    np.testing.assert_allclose(stated[[0, 3, 15, 40, 60]], scatter[[0, 3, 15, 40, 60]], rtol=0.1)
+    np.testing.assert_allclose(stated[[0, 3, 15, 40, 60]], scatter[[0, 3, 15, 40, 60]], rtol=0.12)
     assert stated[15] == pytest.approx(0.45, abs=0.02)  # at a quarter of the duration
 
 

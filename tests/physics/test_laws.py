@@ -12,7 +12,7 @@ fractions = st.floats(0.0, 1.0)
 
 
 def law(name):
-    return getattr(laws, name).py_func
+    return getattr(laws, name)
 
 
 @given(y_values, fractions, st.floats(0.0, 2000.0))

@@ -146,6 +146,27 @@ def test_a_cell_that_never_moves_and_a_single_record_can_be_drawn():
         assert png(cc.plot.summary(run))
 
 
+def test_panels_of_the_summary_share_their_sides_and_their_labels_stay_clear():
+    run = RUN.copy()
+    run["tension"] = 1240.45 + 0.02 * np.sin(run["time"])  # long tick labels
+    figure = cc.plot.summary(run)
+    png(figure)
+    path, top, _, *series = figure.axes
+    for panel in series:
+        assert panel.get_position().intervalx == pytest.approx(top.get_position().intervalx)
+    renderer = figure.canvas.get_renderer()
+    page = figure.bbox
+    assert path.get_window_extent().x1 < min(
+        panel.yaxis.get_tightbbox(renderer).x0 for panel in series
+    )
+    for axes in figure.axes:
+        box = axes.get_tightbbox(renderer)
+        assert page.x0 <= box.x0
+        assert box.x1 <= page.x1
+        assert page.y0 <= box.y0
+        assert box.y1 <= page.y1
+
+
 @pytest.mark.parametrize(
     ("draw", "said"),
     [

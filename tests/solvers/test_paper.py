@@ -94,7 +94,7 @@ def test_forces_balance_at_every_node(zigzag_parameters):
     pull = p.sigma_c + ds["tension"].values[:, None] * (1.0 + p.h * ds["curvature"].values)
     assert np.abs(r * np.log(r) + p.zeta_1 * n * np.log(r) - pull).max() < 1e-10
     assert np.abs(ds["friction"].values - pull).max() < 1e-10
-    speed = p.epsilon * (p.v_p - laws.retrograde_velocity.py_func(np.log(r), r))
+    speed = p.epsilon * (p.v_p - laws.retrograde_velocity(np.log(r), r))
     assert np.abs(ds["normal_velocity"].values - speed).max() < 1e-12
     assert r.min() >= 1.0
 

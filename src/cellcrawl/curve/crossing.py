@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cellcrawl._compile import exact_kernel
+from cellcrawl._compile import exact_kernel, woven_exact_kernel
 from cellcrawl.curve.orientation import orientation
 
 _RUN = 16
@@ -138,7 +138,7 @@ def _folds(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> 
     return ahead <= 0.0 and orientation(ax, ay, bx, by, cx, cy) == 0
 
 
-@exact_kernel
+@woven_exact_kernel
 def _touch(
     ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
 ) -> bool:

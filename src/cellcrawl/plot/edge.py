@@ -45,8 +45,9 @@ def draw_cell(
     zorder: float = 2.0,
 ) -> LineCollection:
     """Draw one cell: a pale body, and its edge coloured by ``values``, shape (node,)."""
-    ax.add_patch(Polygon(points, facecolor=BODY, alpha=0.7, linewidth=0.0, zorder=zorder - 0.5))
-    ax.add_patch(rim(points, field, linewidth, zorder))
+    body = Polygon(points, facecolor=BODY, alpha=0.7, linewidth=0.0, zorder=zorder - 0.5)
+    for patch in (body, rim(points, field, linewidth, zorder)):
+        ax.add_artist(patch)  # callers set the limits; add_patch would measure each outline
     edge = LineCollection(
         list(segments(points)),
         array=values,

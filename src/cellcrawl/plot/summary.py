@@ -15,8 +15,15 @@ from cellcrawl.plot.inputs import drawable
 from cellcrawl.plot.kymograph import kymograph
 from cellcrawl.plot.path import path
 from cellcrawl.plot.scales import TIME_LABEL
-from cellcrawl.plot.style import PAGE, paper_figure
+from cellcrawl.plot.style import PAGE, fixed_figure
 from cellcrawl.plot.time_series import draw_series
+
+_HEIGHT = 3.9
+# left, bottom, width, height of the panels in inches; room for two-line labels and long numbers
+_PATH = (0.05, 0.3, 2.56, 3.25)
+_KYMOGRAPH = (3.46, 2.36, 2.92, 1.3)
+_SERIES = ((3.46, 1.375, 2.92, 0.87), (3.46, 0.39, 2.92, 0.87))
+_COLOURS = (6.53, 2.36, 0.08, 1.3)
 
 
 def summary(dataset: xr.Dataset, every: float | None = None) -> Figure:
@@ -39,13 +46,14 @@ def summary(dataset: xr.Dataset, every: float | None = None) -> Figure:
         For an ``every`` that is not above 0, or a dataset that is no run.
     """
     run = drawable(dataset)
-    with paper_figure(PAGE, 3.9) as figure:
-        grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 1.15], height_ratios=[1.5, 1.0, 1.0])
-        path(run, every, ax=figure.add_subplot(grid[:, 0]), colorbar=False)
-        top = figure.add_subplot(grid[0, 1])
+    with fixed_figure(PAGE, _HEIGHT) as figure:
+        path(run, every, ax=figure.add_axes(_part(_PATH)), colorbar=False)
+        top = figure.add_axes(_part(_KYMOGRAPH))
         kymograph(run, origin="front" if _has_front(run) else "material", ax=top)
+        top.set_position(_part(_KYMOGRAPH))
+        figure.axes[-1].set_position(_part(_COLOURS))
         top.set_xlabel("")
-        series = [figure.add_subplot(grid[row, 1], sharex=top) for row in (1, 2)]
+        series = [figure.add_axes(_part(place), sharex=top) for place in _SERIES]
         for panel, quantity in zip(series, ("tension", "speed"), strict=True):
             draw_series(panel, run, quantity)
         for panel in (top, series[0]):
@@ -54,6 +62,12 @@ def summary(dataset: xr.Dataset, every: float | None = None) -> Figure:
         figure.align_ylabels([top, *series])
         figure.suptitle(describe(run), x=0.01, ha="left")
     return figure
+
+
+def _part(place: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+    """Return a place in inches as parts of the page."""
+    left, bottom, width, height = place
+    return left / PAGE, bottom / _HEIGHT, width / PAGE, height / _HEIGHT
 
 
 def _has_front(run: xr.Dataset) -> bool:

@@ -147,11 +147,11 @@ def pointwise_velocity_and_friction(
     """
     rows = dict(zip(EDGE_ROWS, edge, strict=True))
     y = np.log(off_rate)
-    velocity = _law(laws.edge_velocity)(y, off_rate, rows["v_p"], rows["epsilon"])
-    friction = _law(laws.friction)(y, off_rate, bound_fraction, rows["zeta_1"])
+    velocity = _on_arrays(laws.edge_velocity)(y, off_rate, rows["v_p"], rows["epsilon"])
+    friction = _on_arrays(laws.friction)(y, off_rate, bound_fraction, rows["zeta_1"])
     return velocity, friction
 
 
-def _law(compiled: Any) -> Any:
-    """Return the Python function behind a compiled law; it works on whole arrays."""
-    return compiled.py_func
+def _on_arrays(law: Any) -> Any:
+    """Return a law as it is: outside kernels it takes whole arrays, which its types do not say."""
+    return law

@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl._compile import kernel, woven_kernel
 
 HIGHEST_ORDER: Final = 5
 DIFFERENCES: Final = HIGHEST_ORDER + 3  # rows: one to raise the order by, one for its error
@@ -26,7 +26,7 @@ ERRORS: Final = np.array(
 )
 
 
-@kernel
+@woven_kernel
 def predict(order: int, table: np.ndarray, predicted: np.ndarray, history: np.ndarray) -> None:
     """Extrapolate by one step; leave also what the past contributes to the formula."""
     leading = LEADING[order]
@@ -43,7 +43,7 @@ def predict(order: int, table: np.ndarray, predicted: np.ndarray, history: np.nd
             history[k] += weight * row[k]
 
 
-@kernel
+@woven_kernel
 def move_on(order: int, table: np.ndarray, correction: np.ndarray) -> None:
     """Take the step whose solution is the prediction plus ``correction``."""
     above, top = table[order + 2], table[order + 1]
@@ -81,7 +81,9 @@ def rescale(order: int, factor: float, table: np.ndarray) -> None:
             for x in range(row.size):
                 out[x] += weight * row[x]
     for i in range(1, size):
-        table[i] = table[DIFFERENCES + i]
+        new, old = table[DIFFERENCES + i], table[i]
+        for x in range(old.size):  # not as whole rows: numba compiles much text for their mismatch
+            old[x] = new[x]
 
 
 @kernel

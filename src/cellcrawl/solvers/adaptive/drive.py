@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl._compile import kernel, woven_kernel
 from cellcrawl.solvers.adaptive.differences import (
     DIFFERENCES,
     ERRORS,
@@ -85,7 +85,7 @@ _LEAST_CONTRAST = 1e-7  # waves smaller than this are no longer followed to thei
 _AMPLIFIED = 0.05  # part of a local error found in the error at t = 5 (measured)
 
 
-@kernel
+@woven_kernel
 def bounded_step(h: float, time: float, end: float) -> float:
     """Return the step to try from ``time``: not too long, and landing on ``end`` evenly."""
     h = min(h, LONGEST_STEP)
@@ -109,7 +109,7 @@ def change_step(
     counters[EQUAL_STEPS] = 0
 
 
-@kernel
+@woven_kernel
 def solve_step(
     tolerance: float,
     contrast: float,
@@ -161,7 +161,6 @@ def solve_step(
     return NOT_CONVERGED
 
 
-@kernel
 def bend_history(
     control: np.ndarray,
     counters: np.ndarray,
@@ -181,19 +180,16 @@ def bend_history(
     renew_rates(y, work)
     if not rates(state, residual, y, edge, work):
         return
-    for k in range(state.size):
-        residual[k] *= h
+    residual *= h
     for j in range(1, order + 1):
-        for k in range(state.size):
-            residual[k] -= table[j, k] / j
+        residual -= table[j] / j
     c = h / LEADING[order]
     factor(c, state, y, edge, work, matrix)
     solve(c, state, matrix, residual)
-    for k in range(state.size):
-        table[1, k] += residual[k]
+    table[1] += residual
 
 
-@kernel
+@woven_kernel
 def choose_step(
     error: float,
     tolerance: float,

@@ -117,7 +117,7 @@ def _edge_shape(
     w, n, length = state[:span], state[span : 2 * span], state[2 * span + LENGTH]
     fill_halo(w, count)
     fill_halo(n, count)
-    x, y, kappa, cosine, sine = work
+    x, y, kappa, cosine, sine = work[0], work[1], work[2], work[3], work[4]
     turn = 2.0 * math.pi / count
     for i in range(count):
         j = np.uint64(i) + _HALO

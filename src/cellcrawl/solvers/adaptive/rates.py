@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from cellcrawl._compile import inlined_kernel, kernel
+from cellcrawl._compile import inlined_kernel, kernel, woven_kernel
 from cellcrawl.physics.exponential import exponential
 from cellcrawl.physics.force_balance import SOLVED, halley_step, solve_off_rate
 from cellcrawl.physics.laws import (
@@ -58,7 +58,7 @@ def growth(x: float) -> float:
     return p * x + 1.0
 
 
-@kernel
+@woven_kernel
 def velocities(
     w: np.ndarray,
     n: np.ndarray,
