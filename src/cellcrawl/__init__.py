@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from cellcrawl import linear as linear
     from cellcrawl import modes as modes
     from cellcrawl import observables as observables
+    from cellcrawl import one_dimensional as one_dimensional
     from cellcrawl import plot as plot
     from cellcrawl.curve import Curve as Curve
     from cellcrawl.errors import CellcrawlError as CellcrawlError
@@ -68,7 +69,7 @@ _HOMES = {
     "simulate": "simulation",
     "sweep": "sweeps",
 }
-_MODULES = ("linear", "modes", "observables", "plot")
+_MODULES = ("linear", "modes", "observables", "one_dimensional", "plot")
 
 __all__ = [*_HOMES, *_MODULES, "__version__"]
 

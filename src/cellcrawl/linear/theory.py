@@ -14,6 +14,7 @@ from cellcrawl.linear.characteristic import (
     checked_values,
     checked_wavenumbers,
 )
+from cellcrawl.linear.quadratic import ordered_roots
 from cellcrawl.parameters import Parameters
 
 
@@ -76,16 +77,7 @@ def growth_rates(parameters: Parameters, k: Any, **values: Any) -> np.ndarray:
     half = 0.5 * quadratic.damping / quadratic.a
     product = quadratic.restoring / quadratic.a
     square = 0.25 * quadratic.discriminant / quadratic.a**2
-    root = np.sqrt(np.abs(square))
-    far = -half - np.copysign(root, half)  # no cancellation; the other root from the product
-    near = np.divide(product, far, out=np.zeros_like(far), where=far != 0.0)
-    oscillates = square < 0.0
-    rates = np.empty((*half.shape, 2), complex)
-    for index, (larger, sign) in enumerate(((np.maximum, 1.0), (np.minimum, -1.0))):
-        rates[..., index].real = np.where(oscillates, -half, larger(far, near))
-        rates[..., index].imag = np.where(oscillates, sign * root, 0.0)
-    rates += 0.0  # no minus zeros
-    return rates
+    return ordered_roots(half, product, square)
 
 
 def fastest_decay(parameters: Parameters) -> float:

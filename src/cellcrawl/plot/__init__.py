@@ -11,25 +11,30 @@ from cellcrawl.plot.cell import cell, snapshots
 from cellcrawl.plot.cycle import cycle
 from cellcrawl.plot.diagram import diagram, measure_map
 from cellcrawl.plot.dispersion import dispersion
+from cellcrawl.plot.flat_edge import flat_edge
 from cellcrawl.plot.growth import growth
 from cellcrawl.plot.kymograph import kymograph, kymographs
 from cellcrawl.plot.path import path
 from cellcrawl.plot.stability import stability
 from cellcrawl.plot.summary import summary
 from cellcrawl.plot.time_series import time_series
+from cellcrawl.plot.two_edges import regimes, two_edges
 
 __all__ = [
     "cell",
     "cycle",
     "diagram",
     "dispersion",
+    "flat_edge",
     "growth",
     "kymograph",
     "kymographs",
     "measure_map",
     "path",
+    "regimes",
     "snapshots",
     "stability",
     "summary",
     "time_series",
+    "two_edges",
 ]
