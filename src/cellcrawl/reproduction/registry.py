@@ -10,8 +10,8 @@ from cellcrawl.reproduction.cells import NINE, TRANSITIONS, said
 from cellcrawl.reproduction.recipe import Recipe
 
 _FIGURES: Final = (
-    Recipe("fig2", "growth rate of every wavenumber, four families", "linear theory", 3, "fig2"),
-    Recipe("fig3", "a cell at (25, 600) starts to move, t = 0 to 2", "1 run", 4, "fig3"),
+    Recipe("fig2", "growth rate of every wavenumber, four families", "linear theory", 2, "fig2"),
+    Recipe("fig3", "a cell at (25, 600) starts to move, t = 0 to 2", "25 short runs", 4, "fig3"),
     Recipe(
         "fig4",
         "the motility modes over (r_on, zeta_1), nine of their tracks",
@@ -19,8 +19,8 @@ _FIGURES: Final = (
         110,
         "fig4",
     ),
-    Recipe("fig5", "one period of a rotating and of a zigzagging cell", "2 runs", 5, "fig5"),
-    Recipe("fig6", "a gliding cell becomes a zigzagging one", "10 runs", 12, "fig6"),
+    Recipe("fig5", "one period of a rotating and of a zigzagging cell", "2 runs", 3, "fig5"),
+    Recipe("fig6", "a gliding cell becomes a zigzagging one", "10 runs", 10, "fig6"),
     Recipe(
         "fig7",
         "circularity, tension and distance over (r_on, zeta_1)",
@@ -34,11 +34,11 @@ _FIGURES: Final = (
 )
 _MOVIES: Final = (
     *(
-        Recipe(f"movie-s{number}", said(cell), "1 run", 12, "movies")
+        Recipe(f"movie-s{number}", said(cell), "1 run", 5, "movies")
         for number, cell in enumerate(NINE, start=1)
     ),
     *(
-        Recipe(f"movie-s{number}", change.title, "1 run", 12, "movies")
+        Recipe(f"movie-s{number}", change.title, "1 run", 5, "movies")
         for number, change in enumerate(TRANSITIONS, start=len(NINE) + 1)
     ),
 )

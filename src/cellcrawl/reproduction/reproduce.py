@@ -5,12 +5,16 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from cellcrawl.errors import InputError
+from cellcrawl.locks import locked_folder
 from cellcrawl.reproduction.recipe import Recipe
 from cellcrawl.reproduction.registry import recipes_named
 from cellcrawl.validation import one_of, whole_number
+
+if TYPE_CHECKING:
+    from cellcrawl.reproduction.workplace import Workplace
 
 FORMATS: Final = ("png", "pdf", "svg")
 
@@ -64,7 +68,8 @@ def reproduce(
     Raises
     ------
     InputError
-        For an unknown name or format, before anything is made.
+        For an unknown name or format, before anything is made; or if another process works in
+        ``output``.
     StorageError
         If something cannot be written.
     """
@@ -73,41 +78,39 @@ def reproduce(
         raise InputError("there is nothing to reproduce: give names, or 'all'")
     wanted = [one_of("format", suffix, FORMATS) for suffix in formats]
     dots = whole_number("dpi", dpi, 30, 1200)
-    return _each(recipes, Path(output), quick, wanted, dots, again, progress)
+    choices = {"quick": quick, "formats": wanted, "dpi": dots}
+    return _each(recipes, Path(output), choices, again, progress)
 
 
 def _each(
-    recipes: list[Recipe],
-    root: Path,
-    quick: bool,
-    formats: list[str],
-    dpi: int,
-    again: bool,
-    progress: bool,
+    recipes: list[Recipe], root: Path, choices: dict[str, Any], again: bool, progress: bool
 ) -> Iterator[Made]:
     from cellcrawl.reproduction.workplace import Workplace
+
+    with locked_folder(root, ".lock"):
+        for recipe in recipes:
+            place = Workplace(root, recipe.name, progress=progress, **choices)
+            yield _made(recipe, place, choices, again)
+
+
+def _made(recipe: Recipe, place: Workplace, choices: dict[str, Any], again: bool) -> Made:
     from cellcrawl.simulation.dataset import package_version
 
-    for recipe in recipes:
-        began = clock.monotonic()
-        place = Workplace(
-            root, recipe.name, quick=quick, formats=formats, dpi=dpi, progress=progress
-        )
-        identity = recipe.identity(quick, formats, dpi)
-        record = None if again else place.finished(identity)
-        if record is not None:
-            files = [root / path for path in record["files"]]
-            yield Made(recipe, files, record["found"], clock.monotonic() - began, True)
-            continue
-        found = recipe.make(place)
-        place.finish(
-            {
-                "name": recipe.name,
-                "title": recipe.title,
-                "found": found,
-                "quick": quick,
-                "cellcrawl_version": package_version(),
-                "identity": identity,
-            }
-        )
-        yield Made(recipe, place.files, found, clock.monotonic() - began, False)
+    began = clock.monotonic()
+    identity = recipe.identity(choices)
+    record = None if again else place.finished(identity)
+    if record is not None:
+        files = [place.root / path for path in record["files"]]
+        return Made(recipe, files, record["found"], clock.monotonic() - began, True)
+    found = recipe.make(place)
+    place.finish(
+        {
+            "name": recipe.name,
+            "title": recipe.title,
+            "found": found,
+            "quick": choices["quick"],
+            "cellcrawl_version": package_version(),
+            "identity": identity,
+        }
+    )
+    return Made(recipe, place.files, found, clock.monotonic() - began, False)
