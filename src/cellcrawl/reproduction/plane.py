@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from typing import Any, Final
-
-import numpy as np
 
 from cellcrawl.reproduction.cells import LONG
 from cellcrawl.reproduction.workplace import Workplace
@@ -63,4 +62,4 @@ def keep_table(workplace: Workplace, sweep: Sweep, measures: tuple[str, ...]) ->
 
 def _mean(values: list[float | None]) -> float | str:
     measured = [value for value in values if value is not None]
-    return float(np.mean(measured)) if measured else ""
+    return math.fsum(measured) / len(measured) if measured else ""  # in whatever order they came
