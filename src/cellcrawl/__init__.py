@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from cellcrawl import observables as observables
     from cellcrawl import one_dimensional as one_dimensional
     from cellcrawl import plot as plot
+    from cellcrawl import sweeps as sweeps
     from cellcrawl.curve import Curve as Curve
     from cellcrawl.errors import CellcrawlError as CellcrawlError
     from cellcrawl.errors import InputError as InputError
@@ -69,7 +70,7 @@ _HOMES = {
     "simulate": "simulation",
     "sweep": "sweeps",
 }
-_MODULES = ("linear", "modes", "observables", "one_dimensional", "plot")
+_MODULES = ("linear", "modes", "observables", "one_dimensional", "plot", "sweeps")
 
 __all__ = [*_HOMES, *_MODULES, "__version__"]
 

@@ -74,20 +74,20 @@ linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /
 
 @linux
 def test_a_killed_worker_costs_nothing_but_its_present_run(tmp_path):
-    process = started(tmp_path / "out", 40)
+    process = started(tmp_path / "out", 24)
     wait_for_rows(tmp_path / "out", process)
     os.kill(workers_of(process)[0], signal.SIGKILL)
     assert process.wait(120) == 0, (tmp_path / "said").read_text()
     made = rows(cc.open_sweep(tmp_path / "out"))
-    assert len(made) == 40
+    assert len(made) == 24
     assert {row["status"] for row in made} == {"completed"}
-    assert made == in_one_process(40, tmp_path / "alone")
+    assert made == in_one_process(24, tmp_path / "alone")
     assert not list((tmp_path / "out" / "work").glob("*.jsonl"))
 
 
 @linux
 def test_a_killed_driver_leaves_rows_and_no_workers(tmp_path):
-    process = started(tmp_path / "out", 40)
+    process = started(tmp_path / "out", 24)
     wait_for_rows(tmp_path / "out", process)
     workers = workers_of(process)
     assert len(workers) == 2
@@ -101,8 +101,8 @@ def test_a_killed_driver_leaves_rows_and_no_workers(tmp_path):
     assert kept >= 2
     cc.open_sweep(tmp_path / "out").collect()
     assert len(cc.open_sweep(tmp_path / "out").table()) >= kept
-    again = cc.sweep(grid(40), tmp_path / "out", InProcess(), t_end=0.1)
-    assert rows(again) == in_one_process(40, tmp_path / "alone")
+    again = cc.sweep(grid(24), tmp_path / "out", InProcess(), t_end=0.1)
+    assert rows(again) == in_one_process(24, tmp_path / "alone")
 
 
 @linux

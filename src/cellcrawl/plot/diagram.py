@@ -15,7 +15,7 @@ from matplotlib.path import Path
 from cellcrawl.errors import InputError
 from cellcrawl.plot.mode_symbols import EDGE, MODE_SYMBOLS
 from cellcrawl.plot.style import PAGE, axes_or_new, figure_of
-from cellcrawl.plot.symbols import parameter_label
+from cellcrawl.plot.symbols import MEASURE_LABELS, parameter_label
 from cellcrawl.sweeps import Sweep
 from cellcrawl.sweeps.planes import Plane, majority, means, plane
 
@@ -24,6 +24,8 @@ _ABOVE = 3.0  # zorder: above a stability map
 _FILLS = 0.62  # of the space between points
 _SMALLEST, _LARGEST = 3.0, 9.0  # points
 _FAINT = 0.45  # of a mode's colour, for its region
+_BELOW = -0.17  # of the axes' height: under the label
+_KEY_WIDTH = 72.0  # points
 _ARC = 24  # vertices of a full pie
 
 
@@ -50,7 +52,7 @@ def diagram(
         The parameters; the first two that differ unless given. Runs that differ in something else,
         their seeds say, are put together in one point.
     legend : bool
-        Name the modes above the axes, with the number of runs of each.
+        Name the modes, with the number of runs of each: above the axes, or below yours.
     ax : Axes, optional
         Where to draw, on top of a stability map say; the only axes of a new figure unless given.
 
@@ -74,7 +76,7 @@ def diagram(
         axes.set_xlabel(parameter_label(found.x_name))
         axes.set_ylabel(parameter_label(found.y_name))
         if legend:
-            _name_modes(axes, found)
+            _name_modes(axes, found, above=ax is None)
     return axes
 
 
@@ -113,8 +115,6 @@ def measure_map(
     InputError
         For an unknown measure, or as for `diagram`.
     """
-    from cellcrawl.sweeps.measures import MEASURES
-
     table = _rows(sweep)
     values = means(table, measure, x, y)
     found = plane(table, x, y)
@@ -134,7 +134,7 @@ def measure_map(
         axes.set_ylabel(parameter_label(found.y_name))
         if colorbar:
             bar = axes.figure.colorbar(drawn, ax=axes, pad=0.02)
-            bar.set_label(MEASURES[measure].partition(",")[0])
+            bar.set_label(MEASURE_LABELS[measure])
             bar.outline.set_visible(False)
     return axes
 
@@ -161,8 +161,7 @@ def _draw_regions(axes: Axes, found: Plane) -> None:
     for row in range(up.size):
         away = (np.arange(across.size)[:, None] - i) ** 2 + (row - j) ** 2
         tiles[row] = colours[away.argmin(axis=1)]
-    faint = 1.0 - _FAINT * (1.0 - tiles)
-    axes.pcolormesh(across, up, faint, shading="nearest", zorder=_ABOVE - 1.0)
+    axes.pcolormesh(across, up, _faint(tiles), shading="nearest", zorder=_ABOVE - 1.0)
     _draw_points(axes, found, 2.0 * _SMALLEST / 3.0, lone=1.0)
 
 
@@ -176,10 +175,7 @@ def _frame(axes: Axes, found: Plane) -> None:
 
 def _marker_size(axes: Axes, found: Plane) -> float:
     """Diameter in points at which neighbours stay apart."""
-    figure = figure_of(axes)
-    box = axes.get_position()
-    width = 72.0 * figure.get_figwidth() * box.width
-    height = 72.0 * figure.get_figheight() * box.height
+    width, height = _size_of(axes)
     spaces = []
     for values, limits, room in (
         (found.x, axes.get_xlim(), width),
@@ -189,6 +185,12 @@ def _marker_size(axes: Axes, found: Plane) -> float:
         if places.size > 1:
             spaces.append(float(np.min(np.diff(places))) * room / abs(limits[1] - limits[0]))
     return min(max(_FILLS * min(spaces, default=_LARGEST), _SMALLEST), _LARGEST)
+
+
+def _size_of(axes: Axes) -> tuple[float, float]:
+    """Width and height in points."""
+    figure, box = figure_of(axes), axes.get_position()
+    return 72.0 * figure.get_figwidth() * box.width, 72.0 * figure.get_figheight() * box.height
 
 
 def _draw_points(axes: Axes, found: Plane, size: float, lone: float | None = None) -> None:
@@ -244,26 +246,34 @@ def _slice(first: float, last: float) -> tuple[Path, float]:
     return Path(outline, closed=True), float(np.abs(outline).max())
 
 
-def _name_modes(axes: Axes, found: Plane) -> None:
+def _faint(colours: np.ndarray) -> np.ndarray:
+    return np.asarray(1.0 - _FAINT * (1.0 - colours))
+
+
+def _name_modes(axes: Axes, found: Plane, *, above: bool) -> None:
+    regions = not _is_regular(found)
+    colours = {mode: np.array(to_rgb(MODE_SYMBOLS[mode].colour)) for mode in found.counts}
+    if regions:
+        colours = {mode: _faint(colour) for mode, colour in colours.items()}
     keys = [
         Line2D(
             [],
             [],
             linestyle="none",
-            marker=MODE_SYMBOLS[mode].marker,
-            markerfacecolor=MODE_SYMBOLS[mode].colour,
+            marker="s" if regions else MODE_SYMBOLS[mode].marker,
+            markerfacecolor=tuple(colours[mode].tolist()),
             markeredgecolor=EDGE,
             markeredgewidth=0.3,
-            markersize=5.0,
+            markersize=6.0 if regions else 5.0,
             label=f"{mode} ({int(count.sum())})",
         )
         for mode, count in found.counts.items()
     ]
     axes.legend(
         handles=keys,
-        loc="lower center",
-        bbox_to_anchor=(0.5, 1.0),
-        ncols=len(keys),
+        loc="lower center" if above else "upper center",
+        bbox_to_anchor=(0.5, 1.0 if above else _BELOW),
+        ncols=max(1, min(len(keys), int(_size_of(axes)[0] / _KEY_WIDTH))),
         frameon=False,
         handletextpad=0.1,
         columnspacing=1.0,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import inspect
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -90,22 +91,24 @@ class RunDescription:
 
     def describe(self) -> dict[str, Any]:
         """Return this run as plain values, those the user left out filled in."""
-        usual = inspect.signature(solver_named(self.solver).__init__).parameters
-        options = {
-            name: usual[name].default
-            for name in SOLVERS[self.solver].OPTIONS
-            if name in usual and name != "nodes"
-        }
         return {
             "parameters": self.parameters.to_dict(),
             "schedule": self.schedule.to_dict(),
             "start": self.start.describe(),
             "solver": self.solver,
             "nodes": self.nodes,
-            "options": {**options, **self.options},
+            "options": {**_usual_options(self.solver), **self.options},
             "save_every": self.save_every,
             "t_end": self.t_end,
         }
+
+
+@functools.cache
+def _usual_options(solver: str) -> dict[str, Any]:
+    """Return the options of a solver, but for its nodes, as they are unless given."""
+    known = inspect.signature(SOLVERS[solver].__init__).parameters
+    names = (name for name in SOLVERS[solver].OPTIONS if name in known and name != "nodes")
+    return {name: known[name].default for name in names}
 
 
 def solver_named(name: Any) -> type[Solver]:
