@@ -31,7 +31,7 @@ def make(workplace: Workplace, name: str) -> list[str]:
             panel.set_title(letter, loc="left", fontweight="bold")
         figure.canvas.draw()  # symbols are sized by the room that the axes have
         for letter, panel in zip("ABC", panels, strict=True):
-            plot.diagram(sweep, "r_on", "zeta_1", ax=panel, legend=letter == "A")
+            plot.diagram(sweep, "r_on", "zeta_1", ax=panel, legend=letter == "C")
         for panel in panels[:-1]:
             panel.set_xlabel("")
         workplace.picture(figure)
