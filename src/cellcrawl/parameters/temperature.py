@@ -15,7 +15,7 @@ GAS_CONSTANT: Final = 8.31446261815324
 """In J/(mol K)."""
 REFERENCE: Final = 298.15
 """Temperature of a cell's own values unless said otherwise: 25 degrees Celsius, in K."""
-_COLDEST, _HOTTEST = 260.0, 330.0  # K; keratocytes have been filmed from 267 to 313
+_COLDEST, _HOTTEST = 260.0, 330.0  # K; keratocytes have been filmed from 267 to 308
 _LEAST, _MOST = 1e3, 5e5  # J/mol; a smaller energy is one given in kJ/mol or kcal/mol
 _ZERO_CELSIUS = 273.15
 
