@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
@@ -101,8 +102,16 @@ def _dask(address: str) -> Iterator[Any]:
             f"no Dask scheduler answers at {address} ({reason}): start one with `dask scheduler`, "
             "or leave it out to use this machine"
         ) from None
+    _silence_dask()
     with client:
         yield client
+
+
+def _silence_dask() -> None:
+    """Leave it to us to say, in one line, that a scheduler is lost."""
+    for name in list(logging.root.manager.loggerDict):
+        if name.partition(".")[0] == "distributed":
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
 
 
 def _needs_main(grid: Grid) -> bool:
