@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from cellcrawl import observables as observables
     from cellcrawl import one_dimensional as one_dimensional
     from cellcrawl import plot as plot
+    from cellcrawl import sweeps as sweeps
     from cellcrawl.curve import Curve as Curve
     from cellcrawl.errors import CellcrawlError as CellcrawlError
     from cellcrawl.errors import InputError as InputError
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from cellcrawl.modes import classify as classify
     from cellcrawl.modes import classify_track as classify_track
     from cellcrawl.movies import movie as movie
+    from cellcrawl.parameters import ActivationEnergies as ActivationEnergies
     from cellcrawl.parameters import Parameters as Parameters
     from cellcrawl.parameters import PhysicalParameters as PhysicalParameters
     from cellcrawl.parameters import Scales as Scales
@@ -35,15 +37,21 @@ if TYPE_CHECKING:
     from cellcrawl.starts import FromOutline as FromOutline
     from cellcrawl.starts import PerturbedCircle as PerturbedCircle
     from cellcrawl.starts import RandomPerturbation as RandomPerturbation
+    from cellcrawl.sweeps import Grid as Grid
+    from cellcrawl.sweeps import Sweep as Sweep
+    from cellcrawl.sweeps import open_sweep as open_sweep
+    from cellcrawl.sweeps import sweep as sweep
 
 # Where each public name lives; loaded on first use, so that `import cellcrawl` stays light.
 _HOMES = {
+    "ActivationEnergies": "parameters",
     "CellState": "starts",
     "CellcrawlError": "errors",
     "Curve": "curve",
     "Eigenmode": "starts",
     "FromOutline": "starts",
     "FromRun": "simulation",
+    "Grid": "sweeps",
     "InputError": "errors",
     "Parameters": "parameters",
     "PerturbedCircle": "starts",
@@ -54,12 +62,15 @@ _HOMES = {
     "StorageError": "errors",
     "classify": "modes",
     "classify_track": "modes",
+    "Sweep": "sweeps",
     "movie": "movies",
     "open_run": "simulation",
+    "open_sweep": "sweeps",
     "resume": "simulation",
     "simulate": "simulation",
+    "sweep": "sweeps",
 }
-_MODULES = ("linear", "modes", "observables", "one_dimensional", "plot")
+_MODULES = ("linear", "modes", "observables", "one_dimensional", "plot", "sweeps")
 
 __all__ = [*_HOMES, *_MODULES, "__version__"]
 

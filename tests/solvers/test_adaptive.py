@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import cellcrawl as cc
-from cellcrawl.curve import Curve
+from cellcrawl.curve import Curve, first_crossing
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import CONSTANT, Conditions, Schedule
 from cellcrawl.solvers import Frame
@@ -231,3 +231,21 @@ def test_unresolved_start_is_refused() -> None:
 def test_options_out_of_range_are_refused(options: dict[str, float]) -> None:
     with pytest.raises(InputError):
         solver(**options)
+
+
+def test_an_instant_has_the_bits_of_its_frame_and_is_simple_when_it_says_so() -> None:
+    conditions = Conditions(cc.Parameters(r_on=16))
+    start = cc.RandomPerturbation(seed=6).state(conditions.parameters, 1024)  # this cell tears
+    solver = AdaptiveSolver(start, conditions)
+    doubtful = 0
+    for time in np.arange(0.5, 15.0, 0.5):
+        assert solver.advance(time) is None
+        instant, frame = solver.instant(time), solver.frame(time)
+        names = ("time", "tension", "length", "area", "centroid_x", "centroid_y")
+        assert [getattr(instant, n) for n in names] == [getattr(frame, n) for n in names]
+        doubtful += not instant.surely_simple
+        if instant.surely_simple:
+            assert first_crossing(frame.points) is None
+        if first_crossing(frame.points) is not None:
+            break
+    assert 0 < doubtful < 29

@@ -12,7 +12,7 @@ import click
 from cellcrawl.command_line.options import say
 from cellcrawl.validation import one_of
 
-_KINDS = ("work-precision", "targets", "scaling", "startup", "modes")
+_KINDS = ("work-precision", "targets", "scaling", "startup", "modes", "sweep")
 
 
 @click.command()
@@ -33,6 +33,7 @@ def bench(kind: str, quick: bool, output: Path | None) -> int:
       targets         the solver's targets: accuracy, speed by ratios
       scaling         cost against nodes and against the length of the run
       startup         import, first and second start from the shell
+      sweep           scheduling, memory of the driver, workers
       modes           how often the classifier is right
 
     Compare figures of one run only, and quote ratios: machines differ, and share their cores.
@@ -112,12 +113,20 @@ def _modes(quick: bool) -> _Result:
     return _Result(data, modes.plot())
 
 
+def _sweep(quick: bool) -> _Result:
+    from cellcrawl.bench import sweeps
+
+    rows = list(_table(sweeps.Figure, sweeps.measure(quick)))
+    return _Result({"sweep": [row._asdict() for row in rows]}, None)
+
+
 _MEASURE = {
     "modes": _modes,
     "work-precision": _work_precision,
     "targets": _targets,
     "scaling": _scaling,
     "startup": _startup,
+    "sweep": _sweep,
 }
 
 

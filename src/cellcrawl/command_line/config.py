@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from cellcrawl.errors import InputError
 from cellcrawl.parameters import Schedule
 from cellcrawl.parameters.named import read_toml
-from cellcrawl.simulation import FromRun
-from cellcrawl.starts import Eigenmode, FromOutline, PerturbedCircle, RandomPerturbation, Start
+from cellcrawl.simulation.start_tables import start_from_table
+from cellcrawl.starts import Start
 from cellcrawl.validation import known_names, table
 
 _TABLES = ("parameters", "schedule", "start", "run")
 _RUN = ("t_end", "save_every", "solver", "nodes", "rtol", "dt")
-_STARTS: dict[str, Callable[..., Start]] = {
-    kind.__name__: kind
-    for kind in (RandomPerturbation, PerturbedCircle, Eigenmode, FromOutline, FromRun)
-}
 
 
 class Configuration(NamedTuple):
@@ -39,14 +33,3 @@ def read_configuration(path: Path) -> Configuration:
     schedule = Schedule(tables["schedule"]) if "schedule" in content else None
     start = start_from_table(tables["start"]) if "start" in content else None
     return Configuration(tables["parameters"], tables["run"], schedule, start)
-
-
-def start_from_table(values: dict[str, Any]) -> Start:
-    """Return the start that a table such as ``{kind = "Eigenmode", k = 3}`` describes."""
-    values = dict(values)
-    kind = values.pop("kind", "RandomPerturbation")
-    known_names("[start] kind", [kind], _STARTS)
-    try:
-        return _STARTS[kind](**values)
-    except TypeError as error:
-        raise InputError(f"[start] {kind}: {error}") from None

@@ -22,8 +22,10 @@ _OBJECTS_BETWEEN_COLLECTIONS = 100_000
 _COMMANDS: Final[dict[str, tuple[str, str]]] = {
     "simulate": ("simulate", "Simulate one cell; leave its data, a picture and a movie."),
     "resume": ("resume", "Go on with a saved run."),
+    "sweep": ("sweep", "Run a grid of cells; leave a table and a diagram of their modes."),
     "dispersion": ("theory", "Growth rates of every wavenumber, as a table and a picture."),
     "stability": ("theory", "Which wavenumbers grow where, over two parameters."),
+    "reproduce": ("reproduce", "Make the figures and movies of the paper."),
     "classify": ("classify", "Name the motility modes of runs and of tracks."),
     "plot": ("draw", "Draw a saved run."),
     "movie": ("draw", "Film a saved run."),

@@ -1,15 +1,18 @@
-"""Pictures of runs and of linear theory, made to stand in a paper.
+"""Pictures of runs, sweeps and linear theory, made to stand in a paper.
 
-Each function takes a run, or for linear theory a cell or a map, and returns the Axes or the Figure
-it drew; saving is the caller's: ``plot.path(ds).figure.savefig("path.pdf")``. Where one axes is
-enough, ``ax`` draws on your own.
+Each function takes a run, a sweep, or for linear theory a cell or a map, and returns the Axes or
+the Figure it drew; saving is the caller's: ``plot.path(ds).figure.savefig("path.pdf")``. Where one
+axes is enough, ``ax`` draws on your own.
 Nothing is shown, and neither pyplot nor your settings are touched. A field has the same colours in
 every picture and movie.
 """
 
 from cellcrawl.plot.cell import cell, snapshots
+from cellcrawl.plot.cycle import cycle
+from cellcrawl.plot.diagram import diagram, measure_map
 from cellcrawl.plot.dispersion import dispersion
 from cellcrawl.plot.flat_edge import flat_edge
+from cellcrawl.plot.growth import growth
 from cellcrawl.plot.kymograph import kymograph, kymographs
 from cellcrawl.plot.path import path
 from cellcrawl.plot.stability import stability
@@ -19,10 +22,14 @@ from cellcrawl.plot.two_edges import regimes, two_edges
 
 __all__ = [
     "cell",
+    "cycle",
+    "diagram",
     "dispersion",
     "flat_edge",
+    "growth",
     "kymograph",
     "kymographs",
+    "measure_map",
     "path",
     "regimes",
     "snapshots",

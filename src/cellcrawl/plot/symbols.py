@@ -24,6 +24,19 @@ PARAMETER_NAMES: Final[dict[str, str]] = {
     "k_sigma": "membrane stiffness",
     "r_p": "polymerization rate",
 }
+MEASURE_LABELS: Final[dict[str, str]] = {
+    "confidence": "confidence in the mode",
+    "speed": r"speed ($R_0k_\mathrm{off}^0$)",
+    "turning_rate": r"turning rate (rad $k_\mathrm{off}^0$)",
+    "tension": r"mean tension $\sigma$",
+    "tension_low": r"least tension $\sigma$",
+    "tension_high": r"largest tension $\sigma$",
+    "tension_period": r"period of the tension ($1/k_\mathrm{off}^0$)",
+    "circularity": r"circularity $4\pi A/L^2$",
+    "x_c": r"mean distance from the start $x_c$ ($R_0$)",
+    "area": r"area ($R_0^2$)",
+    "length": r"length of the edge ($R_0$)",
+}
 GROWTH_LABEL: Final = r"growth rate $\mathrm{Re}\,\lambda_k$ ($k_\mathrm{off}^0$)"
 FREQUENCY_LABEL: Final = r"frequency $\mathrm{Im}\,\lambda_k$ ($k_\mathrm{off}^0$)"
 WAVENUMBER_LABEL: Final = "wavenumber $k$"

@@ -37,7 +37,7 @@ def locate_crossing(
 ) -> CrossingFound:
     """Narrow down when the edge crosses itself between ``valid`` and ``crossed``.
 
-    ``checkpoint`` is the solver's state when it was valid.
+    ``checkpoint`` is the solver's state at ``valid`` or earlier.
     The solver ends at the last valid time, from which its frame can be taken.
     """
     crossing = crossing_at(solver, crossed)

@@ -34,10 +34,7 @@ class FromRun:
 
     def state(self, parameters: Parameters, nodes: int) -> CellState:
         """Return the saved state on ``nodes`` nodes; its tension is kept."""
-        dataset = self._dataset()
-        count = dataset.sizes["time"]
-        record = whole_number("record", self.record, -count, count - 1)
-        frame = dataset.isel(time=record).load()
+        frame = self.saved_record()
         origin = np.array([frame["x"][0].item(), frame["y"][0].item()])
         curve = Curve(frame["theta"].values, frame["length"].item(), origin)
         bound = frame["bound_fraction"].values
@@ -45,6 +42,13 @@ class FromRun:
             curve = curve.resampled(nodes)
             bound = np.clip(fourier.resample(bound, nodes), 0.0, 1.0)
         return CellState(curve, bound, frame["tension"].item())
+
+    def saved_record(self) -> xr.Dataset:
+        """Return the saved record that is the start."""
+        dataset = self._dataset()
+        count = dataset.sizes["time"]
+        record = whole_number("record", self.record, -count, count - 1)
+        return dataset.isel(time=record).load()
 
     def describe(self) -> dict[str, Any]:
         """Return this start as plain values for JSON."""

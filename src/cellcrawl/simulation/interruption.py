@@ -37,3 +37,10 @@ class Interruption:
         if self.requested is not None:
             raise KeyboardInterrupt
         self.requested = "Ctrl-C" if number == signal.SIGINT else signal.Signals(number).name
+
+
+class Uninterrupted(Interruption):
+    """Leaves signals as they are: for workers, whose driver says when to stop."""
+
+    def __enter__(self) -> Self:
+        return self

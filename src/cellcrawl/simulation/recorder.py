@@ -1,10 +1,10 @@
-"""Where the frames of a running simulation go: to memory, or to a store on disk in blocks."""
+"""Where the records of a running simulation go: to memory, or to a store on disk in blocks."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -14,15 +14,19 @@ from cellcrawl.simulation.storage import RunStore, open_run
 from cellcrawl.solvers import Frame
 
 Checkpoint = dict[str, np.ndarray]
+Kept_co = TypeVar("Kept_co", covariant=True)
 BLOCK_BYTES = 8_000_000
 BLOCK_SECONDS = 1.0
 
 
-class Recorder(Protocol):
-    """Takes frames in order of time and gives back the Dataset."""
+class Recorder(Protocol[Kept_co]):
+    """Takes records in order of time and gives back what it kept of them."""
 
-    def record(self, frame: Frame) -> bool:
-        """Take a frame; True when it is time for a `commit`."""
+    edges: ClassVar[bool]
+    """Whether it needs each record's whole `Frame`; without, it is given the `Instant`."""
+
+    def record(self, record: Any) -> bool:
+        """Take a record; True when it is time for a `commit`."""
         ...
 
     def commit(self, checkpoint: Checkpoint, attributes: Mapping[str, Any]) -> None:
@@ -30,14 +34,16 @@ class Recorder(Protocol):
         ...
 
     def finish(
-        self, closing: Frame | None, checkpoint: Checkpoint, attributes: Mapping[str, Any]
-    ) -> xr.Dataset:
-        """End the run and return its Dataset. ``closing`` is a last frame off the time grid."""
+        self, closing: Any, checkpoint: Checkpoint, attributes: Mapping[str, Any]
+    ) -> Kept_co:
+        """End the run and return what was kept. ``closing`` is a last record off the time grid."""
         ...
 
 
 class MemoryRecorder:
     """Keeps every frame in memory."""
+
+    edges: ClassVar[bool] = True
 
     def __init__(self) -> None:
         self._frames: list[Frame] = []
@@ -58,6 +64,8 @@ class MemoryRecorder:
 
 class StoreRecorder:
     """Writes blocks of frames to a `RunStore`: memory stays flat and a kill loses little."""
+
+    edges: ClassVar[bool] = True
 
     def __init__(self, store: RunStore, records: int) -> None:
         self._store = store

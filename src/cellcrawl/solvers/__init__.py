@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cellcrawl.solvers.adaptive import AdaptiveSolver
-from cellcrawl.solvers.base import Breakdown, Frame, Solver
+from cellcrawl.solvers.base import Breakdown, Frame, Instant, Solver
 from cellcrawl.solvers.paper import PaperSolver
 from cellcrawl.solvers.spline import SplineSolver
 
@@ -11,4 +11,4 @@ SOLVERS: dict[str, type[Solver]] = {
     solver.name: solver for solver in (AdaptiveSolver, PaperSolver, SplineSolver)
 }
 
-__all__ = ["SOLVERS", "Breakdown", "Frame", "Solver"]
+__all__ = ["SOLVERS", "Breakdown", "Frame", "Instant", "Solver"]

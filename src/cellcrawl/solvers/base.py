@@ -17,14 +17,27 @@ from cellcrawl.physics import laws
 from cellcrawl.starts.base import CellState
 
 
-@dataclass(frozen=True, eq=False)
-class Frame:
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Instant:
+    """The cell as a whole at one instant."""
+
+    time: float
+    tension: float
+    length: float
+    area: float
+    centroid_x: float
+    centroid_y: float
+    surely_simple: bool = False
+    """Whether it is plain that the edge does not cross itself; if not, look."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Frame(Instant):
     """The cell at one instant, on nodes equally spaced in arclength.
 
     Arrays have shape (nodes,). ``normal_velocity`` and ``friction`` follow from the rest.
     """
 
-    time: float
     x: np.ndarray
     y: np.ndarray
     theta: np.ndarray
@@ -33,11 +46,6 @@ class Frame:
     off_rate: np.ndarray
     normal_velocity: np.ndarray
     friction: np.ndarray
-    tension: float
-    length: float
-    area: float
-    centroid_x: float
-    centroid_y: float
 
     @property
     def points(self) -> np.ndarray:
@@ -108,6 +116,10 @@ class Solver(ABC):
     @abstractmethod
     def frame(self, time: float) -> Frame:
         """Return the cell at ``time``, which must lie within the last step."""
+
+    def instant(self, time: float) -> Instant:
+        """Return the cell as a whole at ``time``, with the bits of its `frame`; may be cheaper."""
+        return self.frame(time)
 
     @abstractmethod
     def checkpoint(self) -> dict[str, np.ndarray]:

@@ -127,10 +127,19 @@ def need_nodes(nodes: int, highest: int) -> None:
 
 
 def _sum(modes: Modes, angle: np.ndarray) -> np.ndarray:
-    total = np.zeros_like(angle)
+    """Sum of ``a_k cos(k angle) + b_k sin(k angle)``, by Horner's rule where most k are there."""
+    if 2 * len(modes) > max(modes, default=0):
+        turn = np.exp(1j * angle)
+        total = np.zeros_like(turn)
+        for k in range(max(modes, default=0), -1, -1):
+            cosine, sine = modes.get(k, (0.0, 0.0))
+            total *= turn
+            total += complex(cosine, -sine)
+        return np.asarray(total.real)
+    waves = np.zeros_like(angle)
     for k, (cosine, sine) in modes.items():
-        total += cosine * np.cos(k * angle) + sine * np.sin(k * angle)
-    return total
+        waves += cosine * np.cos(k * angle) + sine * np.sin(k * angle)
+    return waves
 
 
 def _checked_modes(name: str, modes: Any) -> dict[int, tuple[float, float]]:

@@ -86,11 +86,13 @@ def rescale(order: int, factor: float, table: np.ndarray) -> None:
             old[x] = new[x]
 
 
-def interpolated(steps: float, order: int, table: np.ndarray) -> np.ndarray:
-    """State ``steps`` step sizes after the last, between -1 and 0."""
-    state: np.ndarray = table[0].copy()
+@kernel
+def interpolate(steps: float, order: int, table: np.ndarray, state: np.ndarray) -> None:
+    """Fill ``state`` with that ``steps`` step sizes after the last, between -1 and 0."""
+    for k in range(state.size):
+        state[k] = table[0, k]
     weight = 1.0
     for j in range(1, order + 1):
         weight *= (steps + j - 1) / j
-        state += weight * table[j]
-    return state
+        for k in range(state.size):
+            state[k] += weight * table[j, k]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 import math
-from typing import Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from cellcrawl.physics.exponential import exponential
 from cellcrawl.physics.force_balance import SOLVED, balance, solve_off_rate
 from cellcrawl.physics.laws import driving_force, edge_velocity, friction
 from cellcrawl.solvers.adaptive import state as layout
+from cellcrawl.solvers.adaptive.differences import interpolate
 from cellcrawl.solvers.adaptive.rates import LENGTH, ORIGIN_X, ORIGIN_Y, SCALARS, TENSION
 from cellcrawl.solvers.adaptive.staggered import (
     HALO,
@@ -29,47 +30,88 @@ from cellcrawl.solvers.adaptive.staggered import (
     running_sum,
     total,
 )
-from cellcrawl.solvers.base import Frame
+from cellcrawl.solvers.base import Frame, Instant
 
 _HALO = np.uint64(HALO)
 _ROWS: Final = ("x", "y", "theta", "curvature", "bound_fraction", "off_rate")
 _VELOCITY, _FRICTION = 6, 7
+_CLEARLY = 0.1  # in cell radii: far more than the edge does between two midpoints
 
 
-def frame(
-    time: float, state: np.ndarray, log_rate: np.ndarray, edge: np.ndarray
-) -> tuple[Frame, float]:
-    """Return the cell on ``edge.shape[1]`` nodes, and its closure error over the length.
+class Shape(NamedTuple):
+    """The edge at one instant on the solver's own grid, and what is measured on it."""
+
+    state: np.ndarray
+    work: np.ndarray
+    """x and y from node 0 at the nodes and curvature at the midpoints, with halos."""
+    area: float
+    centroid: tuple[float, float]
+    closure_error: float
+    star_shaped: bool
+    """Whether every point of the edge is seen from the centroid; then it cannot cross itself."""
+
+
+def shape_of(state: np.ndarray) -> Shape:
+    """Return the edge of a state."""
+    return shape_between(0.0, 0, state[None])
+
+
+def shape_between(steps: float, order: int, table: np.ndarray) -> Shape:
+    """Return the edge ``steps`` step sizes after the last state, between -1 and 0.
+
+    ``table`` holds the state and its backward differences.
+    """
+    state = np.empty_like(table[0])
+    work = np.empty((5, layout.nodes_of(state) + 2 * HALO))
+    area, x, y, gap, clearance = _edge_shape(steps, order, table, state, work)
+    return Shape(state, work, area, (x, y), gap, clearance > _CLEARLY)
+
+
+def instant(time: float, shape: Shape) -> Instant:
+    """Return the cell as a whole."""
+    return Instant(time=time, **_whole_cell(shape))
+
+
+def frame(time: float, shape: Shape, log_rate: np.ndarray, edge: np.ndarray) -> Frame:
+    """Return the cell on ``edge.shape[1]`` nodes.
 
     ``log_rate`` is any guess of ``log r`` at the solver's midpoints.
     """
-    nodes, count = edge.shape[1], layout.nodes_of(state)
-    scalars = layout.scalars(state)
+    nodes, count = edge.shape[1], log_rate.size
     out = np.empty((_FRICTION + 1, nodes))
-    work = np.empty((5, count + 2 * HALO))
-    area, center_x, center_y, gap = _edge_shape(state, work)
-    y = log_rate[(np.arange(nodes) * count) // nodes]
-    _sample(state, work, *_stencils(count, nodes), edge, y, out)
-    made = Frame(
+    stencils, nearest = _stencils(count, nodes)
+    _sample(shape.state, shape.work, *stencils, edge, log_rate[nearest], out)
+    return Frame(
         time=time,
         **{name: out[row] for row, name in enumerate(_ROWS)},
         normal_velocity=out[_VELOCITY],
         friction=out[_FRICTION],
-        tension=float(scalars[TENSION]),
-        length=float(scalars[LENGTH]),
-        area=area,
-        centroid_x=center_x + float(scalars[ORIGIN_X]),
-        centroid_y=center_y + float(scalars[ORIGIN_Y]),
+        **_whole_cell(shape),
     )
-    return made, gap
+
+
+def _whole_cell(shape: Shape) -> dict[str, Any]:
+    scalars = layout.scalars(shape.state)
+    center_x, center_y = shape.centroid
+    return {
+        "tension": float(scalars[TENSION]),
+        "length": float(scalars[LENGTH]),
+        "area": shape.area,
+        "centroid_x": center_x + float(scalars[ORIGIN_X]),
+        "centroid_y": center_y + float(scalars[ORIGIN_Y]),
+        "surely_simple": shape.star_shaped,
+    }
 
 
 @kernel
-def _edge_shape(state: np.ndarray, work: np.ndarray) -> tuple[float, float, float, float]:
-    """Area, centroid from node 0 and closure error over the length.
+def _edge_shape(
+    steps: float, order: int, table: np.ndarray, state: np.ndarray, work: np.ndarray
+) -> tuple[float, float, float, float, float]:
+    """Area, centroid from node 0, closure error over the length, least support from the centroid.
 
-    Leaves in ``work``: x and y from node 0 at the nodes and curvature at the midpoints, with halos.
+    Fills ``state``, and ``work`` as `Shape` has it.
     """
+    interpolate(steps, order, table, state)
     span = (state.size - SCALARS) // 2
     count = span - 2 * HALO
     w, n, length = state[:span], state[span : 2 * span], state[2 * span + LENGTH]
@@ -94,26 +136,29 @@ def _edge_shape(state: np.ndarray, work: np.ndarray) -> tuple[float, float, floa
     gap_x, gap_y = total(x, count), total(y, count)
     running_sum(x, count)
     running_sum(y, count)
-    area = moment_x = moment_y = 0.0
     for i in range(count):
         j = np.uint64(i) + _HALO
         x[j] -= gap_x * i / count
         y[j] -= gap_y * i / count
-        angle = w[j] + turn * i
-        outward = x[j] * math.sin(angle) - y[j] * math.cos(angle)
-        area += outward
-        moment_x += x[j] * outward
-        moment_y += y[j] * outward
     fill_halo(x, count)
     fill_halo(y, count)
-    # area = 1/2 and area * centroid = 1/3 of the integral of (x . n) and of x (x . n)
-    scale = 2.0 / (3.0 * area)
-    return (
-        0.5 * spacing * area,
-        scale * moment_x,
-        scale * moment_y,
-        math.hypot(gap_x, gap_y) / length,
-    )
+    # 2 area and 3 area * centroid are the integrals of the support x . n and of x (x . n)
+    area = moment_x = moment_y = 0.0
+    for i in range(count):
+        j = np.uint64(i) + _HALO
+        middle_x, middle_y = mean_ahead(x, j), mean_ahead(y, j)
+        support = middle_x * sine[j] - middle_y * cosine[j]
+        area += support
+        moment_x += middle_x * support
+        moment_y += middle_y * support
+    center_x, center_y = 2.0 * moment_x / (3.0 * area), 2.0 * moment_y / (3.0 * area)
+    least = math.inf
+    for i in range(count):
+        j = np.uint64(i) + _HALO
+        arm_x, arm_y = mean_ahead(x, j) - center_x, mean_ahead(y, j) - center_y
+        support = arm_x * sine[j] - arm_y * cosine[j]
+        least = support if support < least else least
+    return 0.5 * spacing * area, center_x, center_y, math.hypot(gap_x, gap_y) / length, least
 
 
 @kernel
@@ -164,16 +209,19 @@ def _weighted(a: np.ndarray, first: int, weights: np.ndarray) -> float:
 
 
 @functools.lru_cache(maxsize=64)
-def _stencils(count: int, nodes: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """First entries and weights that take grid nodes, and midpoints, to the output nodes."""
+def _stencils(
+    count: int, nodes: int
+) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]:
+    """First entries and weights that take grid nodes, and midpoints, to the output nodes.
+
+    And the midpoint near each output node.
+    """
     assert EDGE_ROWS[1:7] == ("zeta_1", "D", "epsilon", "h", "sigma_c", "v_p")
     whole, rest = np.divmod(np.arange(nodes) * count, nodes)
     part = rest / nodes
     early = part < 0.5
-    return (
-        *_stencil(whole, part),
-        *_stencil(whole - early, part + np.where(early, 0.5, -0.5)),
-    )
+    at_midpoints = _stencil(whole - early, part + np.where(early, 0.5, -0.5))
+    return (*_stencil(whole, part), *at_midpoints), whole
 
 
 def _stencil(whole: np.ndarray, part: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -11,13 +11,13 @@ from cellcrawl.errors import InputError
 from cellcrawl.parameters import Conditions
 from cellcrawl.solvers.adaptive import drive, resolution
 from cellcrawl.solvers.adaptive import state as layout
-from cellcrawl.solvers.adaptive.differences import DIFFERENCES, interpolated
-from cellcrawl.solvers.adaptive.frame import frame
+from cellcrawl.solvers.adaptive.differences import DIFFERENCES
+from cellcrawl.solvers.adaptive.frame import Shape, frame, instant, shape_between
 from cellcrawl.solvers.adaptive.newton import MATRIX_ROWS
 from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, renew_rates
 from cellcrawl.solvers.adaptive.staggered import HALO
 from cellcrawl.solvers.adaptive.step_error import relative_size
-from cellcrawl.solvers.base import Breakdown, Frame, Solver
+from cellcrawl.solvers.base import Breakdown, Frame, Instant, Solver
 from cellcrawl.starts.base import CellState
 from cellcrawl.validation import real_number, whole_number
 
@@ -65,6 +65,7 @@ class AdaptiveSolver(Solver):
         self._counters = np.zeros(drive.COUNTERS, np.int64)
         self._tally = np.zeros(4)  # fewest nodes, most nodes, regrids, largest closure error
         self._control[drive.TIME] = self._control[drive.PREVIOUS_TIME] = time
+        self._measured: tuple[float, Shape] | None = None
         self._counters[drive.RESTARTING] = 1
         if start is not None:
             self._begin(start)
@@ -86,6 +87,7 @@ class AdaptiveSolver(Solver):
         return _START_NODES if rtol >= _TIGHT_RTOL else 4 * _START_NODES
 
     def advance(self, target: float) -> Breakdown | None:
+        self._measured = None
         while self.time < target:
             now = self.time
             end = self._conditions.next_break(now)
@@ -114,15 +116,25 @@ class AdaptiveSolver(Solver):
                 return self._stuck(code)
         return None
 
+    def instant(self, time: float) -> Instant:
+        return instant(time, self._shape(time))
+
     def frame(self, time: float) -> Frame:
+        edge = self._conditions.edge(time, self._nodes)
+        return frame(time, self._shape(time), self._log_rate, edge)
+
+    def _shape(self, time: float) -> Shape:
+        """Return the edge at ``time``, measured once."""
+        if self._measured is not None and self._measured[0] == time:
+            return self._measured[1]
         first, last = self._control[drive.PREVIOUS_TIME], self.time
         if not first <= time <= last:
             raise ValueError(f"t = {time} is not within the last step, from {first} to {last}")
         steps = (time - last) / self._control[drive.STEP]
-        state = interpolated(steps, int(self._counters[drive.ORDER]), self._table)
-        made, closure = frame(time, state, self._log_rate, self._conditions.edge(time, self._nodes))
-        self._tally[3] = max(self._tally[3], closure)
-        return made
+        shape = shape_between(steps, int(self._counters[drive.ORDER]), self._table)
+        self._tally[3] = max(self._tally[3], shape.closure_error)
+        self._measured = (time, shape)
+        return shape
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         return {
@@ -194,6 +206,7 @@ class AdaptiveSolver(Solver):
 
     def _hold(self, differences: np.ndarray) -> None:
         """Take up the differences of the state and make room for the work on them."""
+        self._measured = None
         nodes = layout.nodes_of(differences)
         self._table = np.zeros((drive.TABLE_ROWS, layout.size(nodes)))
         self._table[:DIFFERENCES] = differences

@@ -1,0 +1,130 @@
+"""All that makes one run, as a frozen value."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from cellcrawl.errors import InputError, nearest_name
+from cellcrawl.parameters import CONSTANT, Conditions, Parameters, Schedule
+from cellcrawl.simulation.dataset import SCHEMA_VERSION, package_version
+from cellcrawl.simulation.events import crossing_at
+from cellcrawl.solvers import SOLVERS, Solver
+from cellcrawl.starts import RandomPerturbation, Start
+from cellcrawl.validation import real_number
+
+DEFAULT_SOLVER = "adaptive"
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunDescription:
+    """One run: parameters, start, schedule, times and solver; immutable.
+
+    Parameters
+    ----------
+    parameters, t_end, start, save_every, solver, nodes, schedule
+        As in `simulate`; None stands for what is usual.
+    options : mapping
+        The solver's own options.
+
+    Raises
+    ------
+    InputError
+        For a value that cannot be used. Whether the start suits the parameters, and the options
+        the solver, shows when `solver_at_start` is called.
+    """
+
+    parameters: Parameters = field(default_factory=Parameters)
+    t_end: float = 100.0
+    start: Start = field(default_factory=RandomPerturbation)
+    save_every: float = 0.1
+    solver: str = DEFAULT_SOLVER
+    nodes: int | None = None
+    schedule: Schedule = CONSTANT
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        _expect(self.parameters, Parameters, "parameters")
+        _expect(self.schedule, Schedule, "schedule")
+        _expect(self.start, Start, "start")
+        scheme = solver_named(self.solver)
+        checked = {
+            "t_end": real_number("t_end", self.t_end, 0.0, 1e9),
+            "save_every": real_number("save_every", self.save_every, 0.0, 1e9, open_low=True),
+            "nodes": scheme.checked_nodes(self.nodes),
+        }
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
+        _check_options(scheme, self.options)
+
+    @property
+    def conditions(self) -> Conditions:
+        """The parameters and how they change."""
+        return Conditions(self.parameters, self.schedule)
+
+    def solver_at_start(self) -> Solver:
+        """Return the solver with the first state, or raise `InputError` if it cannot be had."""
+        scheme, conditions = solver_named(self.solver), self.conditions
+        assert self.nodes is not None
+        state = self.start.state(conditions.at(0.0), scheme.start_nodes(self.nodes, **self.options))
+        engine = scheme(state, conditions, nodes=self.nodes, **self.options)
+        if crossing_at(engine, 0.0) is not None:
+            raise InputError("the start crosses itself: the model needs a simple edge")
+        return engine
+
+    def identity(self, engine: Solver) -> dict[str, Any]:
+        """Return what a saved run says of how it was made."""
+        return {
+            "parameters": self.parameters.to_dict(),
+            "schedule": self.schedule.to_dict(),
+            "start": self.start.describe(),
+            "seed": getattr(self.start, "seed", -1),
+            "solver": engine.name,
+            "solver_options": engine.options(),
+            "save_every": self.save_every,
+            "cellcrawl_version": package_version(),
+            "schema_version": SCHEMA_VERSION,
+        }
+
+    def describe(self) -> dict[str, Any]:
+        """Return this run as plain values, those the user left out filled in."""
+        return {
+            "parameters": self.parameters.to_dict(),
+            "schedule": self.schedule.to_dict(),
+            "start": self.start.describe(),
+            "solver": self.solver,
+            "nodes": self.nodes,
+            "options": {**_usual_options(self.solver), **self.options},
+            "save_every": self.save_every,
+            "t_end": self.t_end,
+        }
+
+
+@functools.cache
+def _usual_options(solver: str) -> dict[str, Any]:
+    """Return the options of a solver, but for its nodes, as they are unless given."""
+    known = inspect.signature(SOLVERS[solver].__init__).parameters
+    names = (name for name in SOLVERS[solver].OPTIONS if name in known and name != "nodes")
+    return {name: known[name].default for name in names}
+
+
+def solver_named(name: Any) -> type[Solver]:
+    """Return the solver class of that name, or raise `InputError`."""
+    if name not in SOLVERS:
+        raise InputError(f"there is no solver {name!r}: {nearest_name(name, SOLVERS)}")
+    return SOLVERS[name]
+
+
+def _expect(value: Any, kind: Any, name: str) -> None:
+    if not isinstance(value, kind):
+        raise InputError(f"{name} must be a {kind.__name__}, not {type(value).__name__}")
+
+
+def _check_options(scheme: type[Solver], options: Mapping[str, Any]) -> None:
+    for name in options:
+        if name not in scheme.OPTIONS:
+            hint = nearest_name(name, scheme.OPTIONS)
+            raise InputError(f"solver {scheme.name!r} has no option {name!r}: {hint}")

@@ -1,0 +1,126 @@
+"""A solver, followed from saved time to saved time until the run ends."""
+
+from __future__ import annotations
+
+import math
+import time as clock
+from dataclasses import dataclass, field
+from typing import Any, Generic, TypeVar
+
+from cellcrawl.curve import first_crossing
+from cellcrawl.simulation.events import crossing_at, locate_crossing
+from cellcrawl.simulation.interruption import Interruption
+from cellcrawl.simulation.progress import Progress
+from cellcrawl.simulation.recorder import Recorder
+from cellcrawl.solvers import Breakdown, Frame, Instant, Solver
+
+Kept = TypeVar("Kept")
+_CHECK_EVERY = 0.1  # longest time between two looks for a self-crossing
+_CHECKS_PER_CHECKPOINT = 10  # a crossing is traced back from the last checkpoint
+_SAME_TIME = 1e-9  # relative
+
+
+@dataclass
+class Follower(Generic[Kept]):
+    """One run on its way: the only place where solver, events, recorder and progress meet."""
+
+    solver: Solver
+    recorder: Recorder[Kept]
+    identity: dict[str, Any]
+    save_every: float
+    progress: Progress
+    records: int = 0
+    wall_time: float = 0.0
+    interruption: Interruption = field(default_factory=Interruption)
+
+    def follow(self, t_end: float) -> Kept:
+        """Go on to ``t_end`` or to whatever ends the run first; return what was recorded."""
+        self._began = clock.monotonic()
+        with self.interruption as interruption, self.progress:
+            ended, closing = self._follow(t_end, interruption)
+            last = None if closing is None else self._record_at(closing)
+            reached = self._last_record() if closing is None else closing
+            attributes = self._attributes(ended, reached)
+            return self.recorder.finish(last, self.solver.checkpoint(), attributes)
+
+    def _follow(self, t_end: float, interruption: Interruption) -> tuple[Breakdown, float | None]:
+        """Return how the run ended and the time of a closing record, None if it is on the grid."""
+        now = self._last_record() if self.records else -0.5 * _CHECK_EVERY
+        valid, age = self.solver.checkpoint(), 0
+        while True:
+            target, on_grid = self._next_target(now, t_end)
+            ended = self.solver.advance(target)
+            if ended is not None:
+                last = self.solver.time
+                if crossing_at(self.solver, last) is None:
+                    return ended, self._off_grid(max(last, now))
+                target = last
+            seen, crossed = self._look(target)
+            if crossed:
+                found = locate_crossing(self.solver, valid, now, target)
+                return found.breakdown, self._off_grid(found.last_valid)
+            now, age = target, age + 1
+            commits = False
+            if on_grid:
+                self.records += 1
+                self.progress.update(target, seen.tension)
+                commits = self.recorder.record(self._record_at(target, seen))
+            if commits or age == _CHECKS_PER_CHECKPOINT:
+                valid, age = self.solver.checkpoint(), 0
+            if commits:
+                running = Breakdown("running", target, f"has reached t = {target:g}")
+                self.recorder.commit(valid, self._attributes(running, target))
+            if now >= t_end or same_time(now, t_end):
+                done = Breakdown("completed", t_end, f"reached t_end = {t_end:g}")
+                return done, self._off_grid(now)
+            if interruption.requested:
+                message = f"stopped at t = {now:.6g} by {interruption.requested}: can be resumed"
+                return Breakdown("interrupted", now, message), self._off_grid(now)
+
+    def _look(self, time: float) -> tuple[Instant, bool]:
+        """Return the cell, as little of it as will do, and whether its edge crosses itself."""
+        seen = self.solver.instant(time)
+        if seen.surely_simple:
+            return seen, False
+        frame = seen if isinstance(seen, Frame) else self.solver.frame(time)
+        return frame, first_crossing(frame.points) is not None
+
+    def _record_at(self, time: float, seen: Instant | None = None) -> Instant:
+        """Return what the recorder asks for at ``time``, of which ``seen`` is known."""
+        if isinstance(seen, Frame) or (seen is not None and not self.recorder.edges):
+            return seen
+        return self.solver.frame(time) if self.recorder.edges else self.solver.instant(time)
+
+    def _next_target(self, now: float, t_end: float) -> tuple[float, bool]:
+        """Return the next time to look at and whether it is on the grid of saved times."""
+        record = self.records * self.save_every
+        check = (math.floor(now / _CHECK_EVERY + _SAME_TIME) + 1) * _CHECK_EVERY
+        on_grid = record <= check or same_time(record, check)
+        target = record if on_grid else check
+        if target > t_end and not same_time(target, t_end):
+            return t_end, False
+        return target, on_grid
+
+    def _last_record(self) -> float:
+        return (self.records - 1) * self.save_every
+
+    def _off_grid(self, time: float) -> float | None:
+        last = self._last_record()
+        return None if time <= last or same_time(time, last) else time
+
+    def _attributes(self, ended: Breakdown, reached: float) -> dict[str, Any]:
+        spent = self.wall_time + clock.monotonic() - self._began
+        return {
+            "title": "cellcrawl run",
+            "status": ended.status,
+            "status_message": ended.message,
+            "end_time": float(ended.time if ended.status == "completed" else reached),
+            **self.identity,
+            "records_on_grid": self.records,
+            "diagnostics": {**self.solver.diagnostics(), "wall_time": round(spent, 3)},
+        }
+
+
+def same_time(a: float, b: float) -> bool:
+    """Whether two times differ by rounding only."""
+    return abs(a - b) <= _SAME_TIME * max(abs(a), abs(b))

@@ -1,0 +1,121 @@
+"""Where runs may be sent: our own processes, any executor, a Dask cluster."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+from collections.abc import Iterator
+from concurrent.futures import BrokenExecutor, Executor, Future
+from typing import Any
+
+from cellcrawl.errors import InputError, MissingExtraError
+from cellcrawl.sweeps.grid import Grid
+from cellcrawl.sweeps.pool import WorkerPool
+from cellcrawl.validation import shown
+
+_CONNECT = "10s"
+
+
+class InProcess(Executor):
+    """Makes each run at once, in this very process: for debugging and profiling."""
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Call, and return a future that is done."""
+        future: Future[Any] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+@contextlib.contextmanager
+def executor_for(given: Any, workers: int | None, grid: Grid) -> Iterator[Executor]:
+    """Give an executor for what the user gave; one made here is closed at the end.
+
+    Raises
+    ------
+    InputError
+        For something that is no executor, or a scheduler that does not answer.
+    """
+    if given is None:
+        pool = WorkerPool(workers or default_workers(), with_main=_needs_main(grid))
+        try:
+            yield pool
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+        return
+    if isinstance(given, str):
+        with _dask(given) as client:
+            yield client.get_executor()
+        return
+    if hasattr(given, "get_executor"):
+        yield given.get_executor()
+        return
+    if not callable(getattr(given, "submit", None)):
+        raise InputError(
+            f"executor must be a concurrent.futures.Executor or the address of a Dask scheduler, "
+            f"not {shown(given)}"
+        )
+    yield given
+
+
+def default_workers() -> int:
+    """Return the number of cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def worker_count(executor: Executor) -> int:
+    """Return how many calls an executor makes at the same time, as far as it says."""
+    if isinstance(executor, InProcess):
+        return 1
+    if isinstance(executor, WorkerPool):
+        return executor.workers
+    client = getattr(executor, "_client", None)
+    if client is not None:
+        return sum(client.nthreads().values()) or 1
+    return int(getattr(executor, "_max_workers", 0)) or default_workers()
+
+
+def means_killed(error: BaseException) -> bool:
+    """Whether an error says that a worker died, and not that the executor is lost."""
+    return isinstance(error, BrokenExecutor) or type(error).__name__ == "KilledWorker"
+
+
+@contextlib.contextmanager
+def _dask(address: str) -> Iterator[Any]:
+    try:
+        import distributed
+    except ImportError:
+        raise MissingExtraError(
+            "a Dask scheduler needs distributed: pip install 'cellcrawl[dask]'"
+        ) from None
+    try:
+        connect: Any = distributed.Client
+        client = connect(address, timeout=_CONNECT, set_as_default=False)
+    except (OSError, TimeoutError, ValueError) as error:
+        reason = type(error).__name__
+        raise InputError(
+            f"no Dask scheduler answers at {address} ({reason}): start one with `dask scheduler`, "
+            "or leave it out to use this machine"
+        ) from None
+    _silence_dask()
+    with client:
+        yield client
+
+
+def _silence_dask() -> None:
+    """Leave it to us to say, in one line, that a scheduler is lost."""
+    for name in list(logging.root.manager.loggerDict):
+        if name.partition(".")[0] == "distributed":
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+
+
+def _needs_main(grid: Grid) -> bool:
+    """Whether a start is of a class that the user's script defines."""
+    starts = [grid.start, *grid.axes.get("start", ())]
+    starts += [point["start"] for point in grid.points if "start" in point]
+    return any(type(start).__module__ == "__main__" for start in starts)
