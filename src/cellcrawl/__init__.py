@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from cellcrawl.modes import classify as classify
     from cellcrawl.modes import classify_track as classify_track
     from cellcrawl.movies import movie as movie
+    from cellcrawl.parameters import ActivationEnergies as ActivationEnergies
     from cellcrawl.parameters import Parameters as Parameters
     from cellcrawl.parameters import PhysicalParameters as PhysicalParameters
     from cellcrawl.parameters import Scales as Scales
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
 
 # Where each public name lives; loaded on first use, so that `import cellcrawl` stays light.
 _HOMES = {
+    "ActivationEnergies": "parameters",
     "CellState": "starts",
     "CellcrawlError": "errors",
     "Curve": "curve",

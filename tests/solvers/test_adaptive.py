@@ -13,6 +13,7 @@ from cellcrawl.errors import InputError
 from cellcrawl.parameters import CONSTANT, Conditions, Schedule
 from cellcrawl.solvers import Frame
 from cellcrawl.solvers.adaptive import AdaptiveSolver
+from cellcrawl.verification import orders
 from tests.conftest import check_start, reflected, rotated
 
 ZIGZAG = cc.Parameters(r_on=26, zeta_1=600)
@@ -55,11 +56,9 @@ def test_reproduces_the_deterministic_check() -> None:
 
 
 def test_error_follows_the_tolerance(law: cc.Parameters) -> None:
-    true = frame_at(5.0, solver(law, rtol=1e-8))
     tolerances = np.array([1e-3, 1e-4, 1e-5, 1e-6])
-    errors = np.array([error(frame_at(5.0, solver(law, rtol=rtol)), true) for rtol in tolerances])
+    errors, slope = orders.error_against_tolerance(law, tolerances)
     assert np.all(errors <= 4.0 * tolerances)
-    slope = np.polyfit(np.log(tolerances), np.log(errors), 1)[0]
     assert 0.6 < slope < 1.4
 
 
@@ -79,6 +78,21 @@ def test_error_estimate_is_within_a_factor_of_thirty(law: cc.Parameters) -> None
         found = error(frame_at(5.0, made), true)
         estimate = made.diagnostics()["error_estimate"]
         assert found / 3.0 <= estimate <= 30.0 * max(found, rtol)
+
+
+@pytest.mark.parametrize("rtol", [1e-5, 1e-7, 1e-10])
+@pytest.mark.parametrize("start", [cc.PerturbedCircle(), cc.Eigenmode(1, 1e-4, "-")])
+def test_a_start_of_hardly_more_than_rounding_is_taken_at_any_tolerance(
+    start: cc.PerturbedCircle | cc.Eigenmode, rtol: float
+) -> None:
+    run = cc.simulate(ZIGZAG, 0.1, start=start, rtol=rtol)
+    assert run.attrs["status"] == "completed"
+    assert np.ptp(run["bound_fraction"].values) < 1e-6
+
+
+def test_tenth_order_in_space_and_at_least_fourth_in_time(law: cc.Parameters) -> None:
+    assert orders.adaptive_order_in_space(law) == pytest.approx(10.0, abs=0.6)
+    assert orders.adaptive_order_in_time(law) > 4.0
 
 
 def test_resting_circle_stays_a_circle_on_the_fewest_nodes(law: cc.Parameters) -> None:

@@ -10,55 +10,31 @@ import xarray as xr
 
 import cellcrawl as cc
 from cellcrawl.physics import laws
+from cellcrawl.verification import agreement, invariants, orders
+from cellcrawl.verification.agreement import CONVERGED, disagreement, summary
 from tests.conftest import Given, check_start, reflected, rotated, shifted
-
-# MODEL.md section 6: (26, 600), printed law, check start, t = 2, converged.
-TARGET = {"length": 6.609484, "tension": 912.998, "area": 3.165835}
-CENTROID = (0.458285, 0.030681)
 
 
 def last(parameters: cc.Parameters, nodes: int, dt: float, t_end: float = 2.0) -> xr.Dataset:
-    dataset = cc.simulate(
-        parameters,
-        t_end,
-        start=check_start(parameters),
-        solver="paper",
-        nodes=nodes,
-        dt=dt,
-        save_every=t_end,
-    )
-    assert dataset.attrs["status"] == "completed"
-    return dataset.isel(time=-1)
-
-
-def summary(frame: xr.Dataset) -> np.ndarray:
-    names = ["length", "tension", "area", "centroid_x", "centroid_y"]
-    return np.array([frame[name].item() for name in names])
-
-
-def reference() -> np.ndarray:
-    return np.array([*TARGET.values(), *CENTROID])
+    return agreement.last(parameters, t_end, "paper", nodes=nodes, dt=dt)
 
 
 @pytest.mark.parametrize(("nodes", "dt", "within"), [(2000, 1e-3, 3e-3), (4000, 1e-4, 3e-4)])
 def test_check_start_agrees_with_the_converged_values(zigzag_parameters, nodes, dt, within):
-    error = np.abs(summary(last(zigzag_parameters, nodes, dt)) - reference())
-    scale = np.array([*TARGET.values(), 1.0, 1.0])
-    assert np.all(error < within * scale)
+    found = summary(last(zigzag_parameters, nodes, dt))
+    assert disagreement(found, CONVERGED) < within
 
 
 def test_first_order_in_time(zigzag_parameters):
-    coarse, middle, fine = (
-        summary(last(zigzag_parameters, 400, dt)) for dt in (1e-3, 5e-4, 2.5e-4)
-    )
-    order = np.log2(np.abs((coarse - middle) / (middle - fine)))
+    steps = [{"nodes": 400, "dt": dt} for dt in orders.STEPS]
+    order = orders.ratio_orders(zigzag_parameters, 2.0, "paper", steps)
     # The y of the centroid changes too little with the step to show an order.
     assert np.all(np.abs(order[:4] - 1.0) < 0.1)
 
 
 def test_second_order_in_space(zigzag_parameters):
-    coarse, middle, fine = (summary(last(zigzag_parameters, n, 5e-4)) for n in (300, 600, 1200))
-    order = np.log2(np.abs((coarse - middle) / (middle - fine)))
+    grids = [{"nodes": nodes, "dt": 5e-4} for nodes in orders.NODES]
+    order = orders.ratio_orders(zigzag_parameters, 2.0, "paper", grids)
     assert np.all(np.abs(order - 2.0) < 0.1)
 
 
@@ -67,8 +43,8 @@ def test_extrapolation_in_time_and_space_reaches_the_converged_values(zigzag_par
     in_time = (first - 6.0 * second + 8.0 * third) / 3.0
     coarse, fine = (summary(last(zigzag_parameters, n, 4e-4)) for n in (500, 1000))
     extrapolated = in_time + (fine - coarse) / 3.0
-    assert np.all(np.abs(extrapolated / reference() - 1.0)[:3] < 3e-6)
-    assert np.all(np.abs(extrapolated - reference())[3:] < 5e-6)
+    assert np.all(np.abs(extrapolated / CONVERGED - 1.0)[:3] < 3e-6)
+    assert np.all(np.abs(extrapolated - CONVERGED)[3:] < 5e-6)
 
 
 @pytest.mark.parametrize("elasticity", ["printed", "consistent"])
@@ -82,18 +58,17 @@ def test_uniform_circle_stays_uniform(elasticity):
 
 def test_tension_keeps_step_with_area(zigzag_parameters):
     dataset = cc.simulate(zigzag_parameters, 5.0, solver="paper", nodes=400)
-    stretched = zigzag_parameters.tension_rate * (dataset["area"] - dataset["area"][0])
-    drift = dataset["tension"] - dataset["tension"][0] - stretched
-    assert np.abs(drift).max() < 1e-9
+    drift = zigzag_parameters.tension_rate * invariants.area_drift(dataset, zigzag_parameters)
+    assert drift < 1e-9
 
 
 def test_forces_balance_at_every_node(zigzag_parameters):
     ds = cc.simulate(zigzag_parameters, 5.0, solver="paper", nodes=400)
     p = zigzag_parameters
     r, n = ds["off_rate"].values, ds["bound_fraction"].values
-    pull = p.sigma_c + ds["tension"].values[:, None] * (1.0 + p.h * ds["curvature"].values)
-    assert np.abs(r * np.log(r) + p.zeta_1 * n * np.log(r) - pull).max() < 1e-10
-    assert np.abs(ds["friction"].values - pull).max() < 1e-10
+    assert invariants.force_residual(ds, p) < 1e-10
+    friction = (r + p.zeta_1 * n) * np.log(r)
+    assert np.abs(ds["friction"].values - friction).max() < 1e-10
     speed = p.epsilon * (p.v_p - laws.retrograde_velocity(np.log(r), r))
     assert np.abs(ds["normal_velocity"].values - speed).max() < 1e-12
     assert r.min() >= 1.0
@@ -104,7 +79,7 @@ def test_bound_fraction_stays_a_fraction():
         dataset = cc.simulate(
             cc.Parameters(r_on=r_on, zeta_1=zeta_1), 3.0, solver="paper", nodes=200
         )
-        assert 0.0 <= dataset["bound_fraction"].min() <= dataset["bound_fraction"].max() <= 1.0
+        assert invariants.outside_fraction(dataset) == 0.0
 
 
 @pytest.mark.parametrize("angle", [0.7, math.pi / 2, 4.0])

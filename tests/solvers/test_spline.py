@@ -20,35 +20,22 @@ from cellcrawl.simulation.dataset import FIELDS
 from cellcrawl.simulation.events import STATUSES
 from cellcrawl.solvers.paper import step as paper_step
 from cellcrawl.solvers.spline import SplineSolver
+from cellcrawl.verification import agreement
+from cellcrawl.verification.agreement import CONVERGED, disagreement, summary
+from cellcrawl.verification.invariants import area_drift, force_residual
+from cellcrawl.verification.orders import orders_against_finest
 from tests import strategies
 from tests.conftest import Given, check_start, reflected, rotated, shifted
 
 LAWS = ("printed", "consistent")
 POINTS = [(26, 600), (24, 540), (36, 560), (16, 600), (56, 560)]  # MODEL.md section 6
 ZIGZAG = cc.Parameters(r_on=26, zeta_1=600)
-# MODEL.md section 6: (26, 600), printed law, check start, t = 2, converged.
-TARGET = {"length": 6.609484, "tension": 912.998, "area": 3.165835}
-CENTROID = (0.458285, 0.030681)
 
 
 def last(
     parameters: cc.Parameters, t_end: float, solver: str = "spline", **options: Any
 ) -> xr.Dataset:
-    start = options.pop("start", check_start(parameters))
-    dataset = cc.simulate(
-        parameters, t_end, start=start, solver=solver, save_every=t_end, **options
-    )
-    assert dataset.attrs["status"] == "completed"
-    return dataset.isel(time=-1)
-
-
-def summary(frame: xr.Dataset) -> np.ndarray:
-    return np.array([frame[name].item() for name in (*TARGET, "centroid_x", "centroid_y")])
-
-
-def disagreement(found: np.ndarray, true: np.ndarray) -> float:
-    """The largest of the relative errors of L, sigma and A and of the centroid's distance."""
-    return max(np.abs(found / true - 1.0)[:3].max(), math.hypot(*(found - true)[3:]))
+    return agreement.last(parameters, t_end, solver, **options)
 
 
 def solver(parameters: cc.Parameters = ZIGZAG, nodes: int = 128, **options: Any) -> SplineSolver:
@@ -92,26 +79,23 @@ def test_without_its_transport_term_the_theta_l_frame_disagrees(
 
 
 def test_check_start_agrees_with_the_converged_values() -> None:
-    true = np.array([*TARGET.values(), *CENTROID])
     for nodes, within in [(128, 1e-3), (256, 1e-4), (512, 5e-6), (1024, 1.5e-6)]:
         found = summary(last(ZIGZAG, 2.0, nodes=nodes))
-        assert disagreement(found, true) < within
+        assert disagreement(found, CONVERGED) < within
 
 
 def test_fourth_order_in_space(law: cc.Parameters) -> None:
-    coarse, middle, fine = (summary(last(law, 2.0, nodes=n)) for n in (256, 512, 1024))
-    order = math.log2(disagreement(coarse, fine) / disagreement(middle, fine))
+    grids = [{"nodes": nodes} for nodes in (256, 512, 1024)]
+    (order,), _ = orders_against_finest(law, 2.0, "spline", grids)
     assert order > 3.8
 
 
 def test_third_order_in_time(law: cc.Parameters) -> None:
     # Before the first remeshing, whose time would change with the step.
-    steps = (1.6e-2, 8e-3, 4e-3, 2e-3)
-    runs = [summary(last(law, 0.512, nodes=128, dt=dt)) for dt in steps]
-    errors = [disagreement(run, runs[-1]) for run in runs[:-1]]
+    steps = [{"nodes": 128, "dt": dt} for dt in (1.6e-2, 8e-3, 4e-3, 2e-3)]
+    orders, errors = orders_against_finest(law, 0.512, "spline", steps)
     least = 2.4 if law.elasticity == "consistent" else 2.8  # a stiff tension costs some order
-    assert math.log2(errors[0] / errors[1]) > least
-    assert math.log2(errors[1] / errors[2]) > least
+    assert min(orders) > least
     assert errors[-1] < 4e-6
 
 
@@ -127,8 +111,7 @@ def test_tension_keeps_step_with_area_to_the_order_of_the_scheme(law: cc.Paramet
     drifts = []
     for nodes in (256, 512):
         ds = cc.simulate(law, 5.0, start=check_start(law), solver="spline", nodes=nodes)
-        drift = ds["tension"] - law.tension_rate * ds["area"]
-        drifts.append(float(np.abs(drift - drift[0]).max()) / law.tension_rate)
+        drifts.append(area_drift(ds, law))
     assert drifts[1] < 2e-6
     assert math.log2(drifts[0] / drifts[1]) > 3.0
 
@@ -146,10 +129,8 @@ def test_area_and_tension_keep_step_between_remeshings() -> None:
 
 def test_forces_balance_at_every_node(law: cc.Parameters) -> None:
     ds = cc.simulate(law, 1.003, start=check_start(law), solver="spline", save_every=0.0505)
-    r, n = ds["off_rate"].values, ds["bound_fraction"].values
-    pull = law.sigma_c + ds["tension"].values[:, None] * (1.0 + law.h * ds["curvature"].values)
-    assert np.abs(r * np.log(r) + law.zeta_1 * n * np.log(r) - pull).max() < 1e-9
-    assert r.min() >= 1.0
+    assert force_residual(ds, law) < 1e-9
+    assert ds["off_rate"].min() >= 1.0
 
 
 def test_frames_are_equally_spaced_with_node_0_in_place(law: cc.Parameters) -> None:

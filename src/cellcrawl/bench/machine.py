@@ -34,16 +34,16 @@ def describe(machine: dict[str, Any]) -> str:
 def write(path: Path, results: dict[str, Any]) -> None:
     """Write results with the machine's record as JSON."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    content = _without_nan({"machine": record(), **results})
+    content = without_nan({"machine": record(), **results})
     path.write_text(json.dumps(content, indent=1, allow_nan=False) + "\n", "utf-8")
 
 
-def _without_nan(value: Any) -> Any:
+def without_nan(value: Any) -> Any:
     """Return ``value`` with null for what JSON has no word for."""
     if isinstance(value, dict):
-        return {str(name): _without_nan(item) for name, item in value.items()}
+        return {str(name): without_nan(item) for name, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_without_nan(item) for item in value]
+        return [without_nan(item) for item in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 

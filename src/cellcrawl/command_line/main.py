@@ -25,10 +25,12 @@ _COMMANDS: Final[dict[str, tuple[str, str]]] = {
     "sweep": ("sweep", "Run a grid of cells; leave a table and a diagram of their modes."),
     "dispersion": ("theory", "Growth rates of every wavenumber, as a table and a picture."),
     "stability": ("theory", "Which wavenumbers grow where, over two parameters."),
+    "reproduce": ("reproduce", "Make the figures and movies of the paper."),
     "classify": ("classify", "Name the motility modes of runs and of tracks."),
     "plot": ("draw", "Draw a saved run."),
     "movie": ("draw", "Film a saved run."),
     "info": ("info", "Say what a file holds."),
+    "verify": ("verify", "Verify the package and the paper's claims."),
     "bench": ("bench", "Measure accuracy and speed on this machine."),
     "completion": ("completion", "Print the shell completion script."),
 }

@@ -4,6 +4,7 @@ The base state is a circle of radius 1 at rest. Wavenumber k = 0 breathes, k = 1
 change the shape.
 """
 
+from cellcrawl.linear.evolution import evolution
 from cellcrawl.linear.modes import Mode, cutoff_wavenumber, fastest_mode, unstable_modes
 from cellcrawl.linear.stability import curves_in, marginal_curves, stability_map
 from cellcrawl.linear.theory import BaseState, base_state, fastest_decay, growth_rates
@@ -16,6 +17,7 @@ __all__ = [
     "base_state",
     "curves_in",
     "cutoff_wavenumber",
+    "evolution",
     "fastest_decay",
     "fastest_mode",
     "growth_rates",

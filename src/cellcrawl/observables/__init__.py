@@ -9,6 +9,7 @@ say where the measure misleads.
 from cellcrawl.observables.asymmetry import front_rear_asymmetry, left_right_asymmetry
 from cellcrawl.observables.displacement import mean_squared_displacement
 from cellcrawl.observables.distance import mean_distance, straightness
+from cellcrawl.observables.fourier import fourier_amplitude
 from cellcrawl.observables.front import front_position
 from cellcrawl.observables.kymograph import kymograph
 from cellcrawl.observables.motion import centroid_velocity, heading, speed, turning_rate
@@ -28,6 +29,7 @@ __all__ = [
     "aspect_ratio",
     "centroid_velocity",
     "circularity",
+    "fourier_amplitude",
     "front_position",
     "front_rear_asymmetry",
     "heading",

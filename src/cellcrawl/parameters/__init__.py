@@ -5,6 +5,7 @@ from cellcrawl.parameters.dimensionless import DESCRIPTIONS, ELASTICITIES, Param
 from cellcrawl.parameters.physical import QUANTITIES, PhysicalParameters
 from cellcrawl.parameters.scales import KINDS, Scales
 from cellcrawl.parameters.schedule import CONSTANT, Schedule
+from cellcrawl.parameters.temperature import ActivationEnergies
 
 __all__ = [
     "CONSTANT",
@@ -13,6 +14,7 @@ __all__ = [
     "ELASTICITIES",
     "KINDS",
     "QUANTITIES",
+    "ActivationEnergies",
     "Conditions",
     "Parameters",
     "PhysicalParameters",

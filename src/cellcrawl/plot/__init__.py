@@ -8,9 +8,11 @@ every picture and movie.
 """
 
 from cellcrawl.plot.cell import cell, snapshots
+from cellcrawl.plot.cycle import cycle
 from cellcrawl.plot.diagram import diagram, measure_map
 from cellcrawl.plot.dispersion import dispersion
 from cellcrawl.plot.flat_edge import flat_edge
+from cellcrawl.plot.growth import growth
 from cellcrawl.plot.kymograph import kymograph, kymographs
 from cellcrawl.plot.path import path
 from cellcrawl.plot.stability import stability
@@ -20,9 +22,11 @@ from cellcrawl.plot.two_edges import regimes, two_edges
 
 __all__ = [
     "cell",
+    "cycle",
     "diagram",
     "dispersion",
     "flat_edge",
+    "growth",
     "kymograph",
     "kymographs",
     "measure_map",

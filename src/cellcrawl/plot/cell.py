@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from cellcrawl.errors import InputError
 from cellcrawl.observables import centroid_velocity
 from cellcrawl.observables.inputs import edge_field
 from cellcrawl.plot.edge import (
@@ -22,7 +26,7 @@ from cellcrawl.plot.edge import (
 )
 from cellcrawl.plot.inputs import drawable, record_at, records_at
 from cellcrawl.plot.scales import Limits, norm_for
-from cellcrawl.plot.style import COLUMN, INK, PAGE, axes_or_new, paper_figure
+from cellcrawl.plot.style import COLUMN, INK, PAGE, axes_or_new, figure_of, paper_figure
 
 _ARROW = 4.0  # length of the velocity's arrow, in units of time
 _IN_A_ROW = 6
@@ -93,6 +97,8 @@ def snapshots(
     field: str = "bound_fraction",
     limits: Limits | None = None,
     velocity: bool = False,
+    colorbar: bool = True,
+    axes: Sequence[Axes] | None = None,
 ) -> Figure:
     """Draw the cell at several times, side by side at one scale.
 
@@ -110,6 +116,10 @@ def snapshots(
         Ends of the colour scale; the field's own unless given.
     velocity : bool
         Draw the velocity of the centroid as an arrow.
+    colorbar : bool
+        Add a colour bar.
+    axes : sequence of Axes, optional
+        Where to draw, one for each time; a new figure unless given.
 
     Returns
     -------
@@ -118,34 +128,57 @@ def snapshots(
     Raises
     ------
     InputError
-        For an unknown field, no times, a time outside the run, or a dataset that is no run.
+        For an unknown field, no times, a time outside the run, axes that are not as many as the
+        times, or a dataset that is no run.
     """
     run = drawable(dataset)
     edge_field(field)
     records = records_at(run, times)
-    points = [edge_points(run, record) for record in records]
     values = run[field].isel(time=records).values
     norm = norm_for(field, values, limits)
-    reach = 0.5 * max(float(np.ptp(outline, axis=0).max()) for outline in points) + 0.1
-    start = np.array([run["centroid_x"].values[0], run["centroid_y"].values[0]])
+    if axes is not None:
+        if len(axes) != len(records):
+            raise InputError(f"there are {len(axes)} axes for {len(records)} times")
+        edge = _draw_all(axes, run, records, field, norm, velocity)
+        if colorbar:
+            colour_bar(edge, list(axes), field, values, fraction=0.03, shrink=0.8)
+        return figure_of(axes[0])
     columns = min(len(records), _IN_A_ROW)
     rows = -(-len(records) // columns)
     side = min((PAGE - 0.7) / columns, 1.6)
     with paper_figure(side * columns + 0.7, (side + 0.2) * rows + 0.2, equal=True) as figure:
-        panels = figure.subplots(rows, columns, squeeze=False).ravel()
+        panels = figure.subplots(rows, columns, squeeze=False).ravel().tolist()
         for panel in panels[len(records) :]:
             panel.set_axis_off()
-        for panel, record, outline, colours in zip(panels, records, points, values, strict=False):
-            edge = draw_cell(panel, outline, colours, field, norm, linewidth=1.8)
-            middle = 0.5 * (outline.min(axis=0) + outline.max(axis=0))
-            frame(panel, middle - reach, middle + reach, 0.0)
-            if np.all(np.abs(start - middle) < reach):
-                panel.plot(*start, "o", color=INK, markersize=2.0, zorder=4)
-            _draw_centroid(panel, run, record, velocity)
-            panel.set_title(_time_label(run, record))
-        scale_bar(panels[0], round_length(reach))
-        colour_bar(edge, panels.tolist(), field, values, fraction=0.03, shrink=0.8)
+        edge = _draw_all(panels, run, records, field, norm, velocity)
+        if colorbar:
+            colour_bar(edge, panels, field, values, fraction=0.03, shrink=0.8)
     return figure
+
+
+def _draw_all(
+    panels: Sequence[Axes],
+    run: xr.Dataset,
+    records: Sequence[int],
+    field: str,
+    norm: Normalize,
+    velocity: bool,
+) -> LineCollection:
+    """Draw the cell of each record on its panel, all at one scale; return the last edge."""
+    outlines = [edge_points(run, record) for record in records]
+    reach = 0.5 * max(float(np.ptp(outline, axis=0).max()) for outline in outlines) + 0.1
+    start = np.array([run["centroid_x"].values[0], run["centroid_y"].values[0]])
+    for panel, record, outline in zip(panels, records, outlines, strict=False):
+        colours = run[field].isel(time=record).values
+        edge = draw_cell(panel, outline, colours, field, norm, linewidth=1.8)
+        middle = 0.5 * (outline.min(axis=0) + outline.max(axis=0))
+        frame(panel, middle - reach, middle + reach, 0.0)
+        if np.all(np.abs(start - middle) < reach):
+            panel.plot(*start, "o", color=INK, markersize=2.0, zorder=4)
+        _draw_centroid(panel, run, record, velocity)
+        panel.set_title(_time_label(run, record))
+    scale_bar(panels[0], round_length(reach))
+    return edge
 
 
 def _draw_centroid(ax: Axes, run: xr.Dataset, record: int, velocity: bool) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -9,10 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
 from cellcrawl import observables
+from cellcrawl.errors import InputError
 from cellcrawl.plot.edge import colour_bar
 from cellcrawl.plot.inputs import drawable
 from cellcrawl.plot.scales import SCALES, TIME_LABEL, Limits, norm_for
-from cellcrawl.plot.style import COLUMN, PAGE, axes_or_new, paper_figure
+from cellcrawl.plot.style import COLUMN, PAGE, axes_or_new, figure_of, paper_figure
 
 _PANELS = ("bound_fraction", "off_rate", "friction", "curvature")
 _AXIS_LABELS = {"front": "$s/L$ from front", "material": "$s/L$"}
@@ -64,7 +67,9 @@ def kymograph(
     return axes
 
 
-def kymographs(dataset: xr.Dataset, *, origin: str = "front") -> Figure:
+def kymographs(
+    dataset: xr.Dataset, *, origin: str = "front", axes: Sequence[Axes] | None = None
+) -> Figure:
     """Draw the kymographs of bound fraction, off-rate, friction and curvature on one page.
 
     Parameters
@@ -73,6 +78,8 @@ def kymographs(dataset: xr.Dataset, *, origin: str = "front") -> Figure:
         A run.
     origin : {"front", "material"}
         The front in the middle, or a material point at the bottom; see `observables.kymograph`.
+    axes : four Axes, optional
+        Where to draw; a new figure unless given.
 
     Returns
     -------
@@ -81,20 +88,31 @@ def kymographs(dataset: xr.Dataset, *, origin: str = "front") -> Figure:
     Raises
     ------
     InputError
-        For an unknown origin, a cell that never moves and so has no front, or
-        a dataset that is no run.
+        For an unknown origin, a cell that never moves and so has no front, axes that are not four,
+        or a dataset that is no run.
     """
     run = drawable(dataset)
+    if axes is not None:
+        if len(axes) != len(_PANELS):
+            raise InputError(f"kymographs need {len(_PANELS)} axes, not {len(axes)}")
+        _draw_four(axes, run, origin)
+        for panel in axes:
+            panel.set(xlabel=TIME_LABEL, ylabel=_AXIS_LABELS[origin])
+        return figure_of(axes[0])
     with paper_figure(PAGE, 3.4) as figure:
         panels = figure.subplots(2, 2, sharex=True, sharey=True)
-        for panel, field in zip(panels.ravel(), _PANELS, strict=True):
-            _draw(panel, run, field, origin, None)
-            panel.set_title(f"{SCALES[field].name} {SCALES[field].symbol}", loc="left")
+        _draw_four(panels.ravel().tolist(), run, origin)
         for panel in panels[-1]:
             panel.set_xlabel(TIME_LABEL)
         for panel in panels[:, 0]:
             panel.set_ylabel(_AXIS_LABELS[origin])
     return figure
+
+
+def _draw_four(panels: Sequence[Axes], run: xr.Dataset, origin: str) -> None:
+    for panel, field in zip(panels, _PANELS, strict=True):
+        _draw(panel, run, field, origin, None)
+        panel.set_title(f"{SCALES[field].name} {SCALES[field].symbol}", loc="left")
 
 
 def _draw(ax: Axes, run: xr.Dataset, field: str, origin: str, limits: Limits | None) -> AxesImage:

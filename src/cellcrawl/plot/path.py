@@ -12,12 +12,14 @@ from cellcrawl.observables.inputs import edge_field
 from cellcrawl.plot.edge import colour_bar, draw_cell, edge_points, frame, scale_bar
 from cellcrawl.plot.inputs import drawable, record_at
 from cellcrawl.plot.scales import Limits, norm_for
-from cellcrawl.plot.style import COLUMN, TRACK, axes_or_new
+from cellcrawl.plot.style import BODY, COLUMN, TRACK, axes_or_new
 from cellcrawl.validation import real_number
 
 _STEPS = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.5, 8.0, 10.0)
 _MARGIN = 0.2  # around the contours, in R_0
+_NARROWEST = 0.7  # width over height of the picture
 _MOST = 1000
+_APART = 0.45  # in R_0: between two times that are written
 _NEAREST = 0.4  # of `every`: nearer contours than this are not added at the end
 
 
@@ -28,6 +30,7 @@ def path(
     field: str = "bound_fraction",
     limits: Limits | None = None,
     colorbar: bool = True,
+    times: bool = False,
     ax: Axes | None = None,
 ) -> Axes:
     """Draw cell contours along the path of the centroid, coloured by a field.
@@ -46,6 +49,8 @@ def path(
         Ends of the colour scale; the field's own unless given.
     colorbar : bool
         Add a colour bar.
+    times : bool
+        Write the time of each contour in it, unless that would cover the time before.
     ax : Axes, optional
         Where to draw; the only axes of a new figure unless given.
 
@@ -75,10 +80,24 @@ def path(
         frame(axes, low, high, _MARGIN)
         axes.plot(*track.T, color=TRACK, linewidth=0.9, zorder=3.0, solid_capstyle="round")
         axes.plot(*track[0], "o", color=TRACK, markersize=2.5, zorder=3.1)
+        last: np.ndarray | None = None
         for number, (outline, colours) in enumerate(zip(points, values, strict=True)):
             edge = draw_cell(
                 axes, outline, colours, field, norm, linewidth=1.5, zorder=2.0 + 1e-4 * number
             )
+            middle = outline.mean(axis=0)
+            if times and (last is None or np.hypot(*(middle - last)) > _APART):
+                last = middle
+                axes.text(
+                    float(middle[0]),
+                    float(middle[1]),
+                    f"{float(run['time'][records[number]]):.4g}",
+                    ha="center",
+                    va="center",
+                    fontsize="small",
+                    zorder=3.2,
+                    bbox={"facecolor": BODY, "edgecolor": "none", "alpha": 0.8, "pad": 0.6},
+                )
         scale_bar(axes)
         axes.annotate(
             _caption(run, step),
@@ -150,8 +169,9 @@ def _ended_early(dataset: xr.Dataset) -> bool:
 
 
 def _box(clouds: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the corners of the box around all points."""
-    return (
-        np.min([cloud.min(axis=0) for cloud in clouds], axis=0),
-        np.max([cloud.max(axis=0) for cloud in clouds], axis=0),
-    )
+    """Return the corners of the box around all points, wide enough for what stands below it."""
+    low = np.min([cloud.min(axis=0) for cloud in clouds], axis=0)
+    high = np.max([cloud.max(axis=0) for cloud in clouds], axis=0)
+    missing = _NARROWEST * (high[1] - low[1]) - (high[0] - low[0])
+    widen = np.array([0.5 * max(missing, 0.0), 0.0])
+    return low - widen, high + widen

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
+import matplotlib as mpl
+import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -12,7 +15,7 @@ from cellcrawl import observables
 from cellcrawl.errors import InputError
 from cellcrawl.plot.inputs import drawable
 from cellcrawl.plot.scales import SERIES_LABELS, TIME_LABEL
-from cellcrawl.plot.style import COLUMN, paper_figure
+from cellcrawl.plot.style import COLUMN, figure_of, paper_figure
 from cellcrawl.validation import known_names
 
 _COLOURS = {
@@ -25,17 +28,21 @@ _COLOURS = {
 
 
 def time_series(
-    dataset: xr.Dataset,
+    dataset: xr.Dataset | Mapping[str, xr.Dataset],
     quantities: Sequence[str] = ("tension", "speed", "length", "area", "circularity"),
+    *,
+    axes: Sequence[Axes] | None = None,
 ) -> Figure:
     """Draw tension, speed, length, area and circularity over time, one above the other.
 
     Parameters
     ----------
-    dataset : Dataset
-        A run.
+    dataset : Dataset or mapping of str to Dataset
+        A run; or several by the names the legend gives them, one colour each.
     quantities : sequence of str
         Which of the five, in this order.
+    axes : sequence of Axes, optional
+        Where to draw, one for each quantity; a new figure unless given.
 
     Returns
     -------
@@ -44,28 +51,65 @@ def time_series(
     Raises
     ------
     InputError
-        For an unknown quantity, or a dataset that is no run.
+        For an unknown quantity, no runs, axes that are not as many as the quantities, or a dataset
+        that is no run.
     """
-    run = drawable(dataset)
+    runs = _named_runs(dataset)
     if isinstance(quantities, str):
         quantities = [quantities]
     known_names("plot.time_series", quantities, SERIES_LABELS)
     if not quantities:
         raise InputError(f"quantities is empty: known names: {', '.join(SERIES_LABELS)}")
+    if axes is not None:
+        if len(axes) != len(quantities):
+            raise InputError(f"there are {len(axes)} axes for {len(quantities)} quantities")
+        _draw_all(axes, runs, quantities)
+        return figure_of(axes[0])
     with paper_figure(COLUMN, 0.35 + 0.85 * len(quantities)) as figure:
-        panels = figure.subplots(len(quantities), 1, sharex=True, squeeze=False).ravel()
-        for panel, quantity in zip(panels, quantities, strict=True):
-            draw_series(panel, run, quantity)
-        panels[-1].set_xlabel(TIME_LABEL)
-        figure.align_ylabels(list(panels))
+        panels = figure.subplots(len(quantities), 1, sharex=True, squeeze=False).ravel().tolist()
+        _draw_all(panels, runs, quantities)
+        figure.align_ylabels(panels)
     return figure
 
 
-def draw_series(ax: Axes, run: xr.Dataset, quantity: str) -> None:
+def _named_runs(dataset: Any) -> dict[str, xr.Dataset]:
+    if isinstance(dataset, xr.Dataset) or not isinstance(dataset, Mapping):
+        return {"": drawable(dataset)}
+    runs = {str(name): drawable(run) for name, run in dataset.items()}
+    if not runs:
+        raise InputError("there are no runs to draw: give at least one by name")
+    return runs
+
+
+def _draw_all(
+    panels: Sequence[Axes], runs: Mapping[str, xr.Dataset], quantities: Sequence[str]
+) -> None:
+    several = len(runs) > 1
+    colours = mpl.colormaps["viridis"](np.linspace(0.0, 0.9, len(runs)))
+    for panel, quantity in zip(panels, quantities, strict=True):
+        for colour, (name, run) in zip(colours, runs.items(), strict=True):
+            draw_series(panel, run, quantity, colour if several else None, name)
+        first = min(float(run["time"][0]) for run in runs.values())
+        last = max(float(run["time"][-1]) for run in runs.values())
+        if last > first:
+            panel.set_xlim(first, last)
+    panels[-1].set_xlabel(TIME_LABEL)
+    if several:
+        panels[0].legend(frameon=False, handlelength=1.4)
+
+
+def draw_series(
+    ax: Axes, run: xr.Dataset, quantity: str, colour: Any = None, name: str = ""
+) -> None:
     """Draw one quantity over time, with its label."""
     times = run["time"].values
-    marker = "." if times.size == 1 else ""
-    ax.plot(times, _values(run, quantity).values, marker=marker, color=_COLOURS[quantity])
+    ax.plot(
+        times,
+        series_values(run, quantity).values,
+        marker="." if times.size == 1 else "",
+        color=_COLOURS[quantity] if colour is None else colour,
+        label=name or None,
+    )
     ax.set_ylabel("\n".join(SERIES_LABELS[quantity]))
     if times[-1] > times[0]:
         ax.set_xlim(float(times[0]), float(times[-1]))
@@ -73,7 +117,8 @@ def draw_series(ax: Axes, run: xr.Dataset, quantity: str) -> None:
     ax.spines[["top", "right"]].set_visible(False)
 
 
-def _values(run: xr.Dataset, quantity: str) -> xr.DataArray:
+def series_values(run: xr.Dataset, quantity: str) -> xr.DataArray:
+    """Return one of the quantities of `time_series`."""
     if quantity == "speed":
         return observables.speed(run)
     if quantity == "circularity":

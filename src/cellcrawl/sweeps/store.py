@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from cellcrawl.errors import InputError, StorageError
+from cellcrawl.locks import try_lock
 from cellcrawl.sweeps.grid import Grid
 from cellcrawl.sweeps.identity import code_version
 from cellcrawl.sweeps.journal import read_journal
@@ -214,7 +215,7 @@ class SweepStore:
         except OSError as error:
             raise cannot_write(path, error) from None
         with file:
-            if not _lock(file):
+            if not try_lock(file):
                 raise InputError(
                     f"another process is at work on {self.folder} ({path.name} is held): wait for "
                     "it, or stop it"
@@ -228,7 +229,7 @@ class SweepStore:
     def _is_held(self, name: str) -> bool:
         try:
             with self.layout.lock(name).open("r") as file:
-                return not _lock(file)
+                return not try_lock(file)
         except FileNotFoundError:
             return False
 
@@ -236,17 +237,3 @@ class SweepStore:
 def new_name(driver: str) -> str:
     """Return a name for files that no other driver gives."""
     return f"{driver}-{uuid.uuid4().hex[:12]}"
-
-
-def _lock(file: Any) -> bool:
-    try:
-        import fcntl
-    except ImportError:  # no such locks on this system: trust the user
-        return True
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:  # a file system without locks
-        return True
-    return True

@@ -39,7 +39,7 @@ _DOUBLE_DIFFERENCES = 5
 _FORMED = 0.1  # spread of the bound fraction along the edge of a formed cell
 _AMPLIFIED = 5.0  # care with the steps before (measured)
 _FLAT = 1e-6  # slopes below this are as good as none
-_ROUNDING = 1e-13  # waves smaller than this are as good as none
+_ROUNDING = 3e-13  # waves smaller than this are what rounding leaves of none
 _HALO = np.uint64(HALO)
 _1 = np.uint64(1)
 
