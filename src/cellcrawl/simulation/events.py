@@ -57,6 +57,8 @@ def locate_crossing(
 
 def crossing_at(solver: Solver, time: float) -> Crossing | None:
     """Return where the edge crosses itself at a time in the solver's last step."""
+    if solver.instant(time).surely_simple:
+        return None
     return first_crossing(solver.frame(time).points)
 
 
