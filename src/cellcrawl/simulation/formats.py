@@ -57,7 +57,6 @@ class NetCDF:
                 if written == 0:
                     _create(file, part, records)
                 count = part.sizes["time"]
-                file.resize_dimension("time", written + count)
                 for name, variable in part.variables.items():
                     file.variables[name][written : written + count] = variable.values
                 written += count
@@ -115,7 +114,7 @@ def by_suffix(path: Path) -> Format:
 
 
 def _create(file: h5netcdf.File, first: xr.Dataset, total: int) -> None:
-    file.dimensions = {"time": None, "node": first.sizes["node"]}
+    file.dimensions = {"time": total, "node": first.sizes["node"]}
     for name, variable in first.variables.items():
         chunks = _chunks(variable, total)
         created = file.create_variable(name, variable.dims, "f8", chunks=chunks)
