@@ -9,6 +9,7 @@ from typing import Final
 from cellcrawl.errors import InputError, nearest_name
 from cellcrawl.verification import (
     agreement,
+    claims_diagram,
     claims_linear,
     claims_modes,
     claims_numerics,
@@ -24,8 +25,7 @@ from cellcrawl.verification import (
 )
 from cellcrawl.verification.check import Check
 
-# What is not verified yet gets a module with functions that yield results, and lines here. Claims
-# about modes over the whole diagram and about its colours (Figs. 4A and 7) belong with the sweeps.
+# What is not verified yet gets a module with functions that yield results, and lines here.
 CHECKS: Final[tuple[Check, ...]] = (
     Check("curves", "geometry", geometry.curves),
     Check("frames", "geometry", geometry.of_solvers),
@@ -56,6 +56,7 @@ CHECKS: Final[tuple[Check, ...]] = (
     Check("turning", "claims-modes", claims_modes.turning),
     Check("shapes", "claims-modes", claims_modes.shapes),
     Check("irregular", "claims-modes", claims_modes.irregular),
+    Check("diagram", "claims-modes", claims_diagram.diagram),
     Check("transitions", "claims-robustness", claims_robustness.transitions),
     Check("starts", "claims-robustness", claims_robustness.starts),
     Check("trends", "claims-trends", claims_trends.trends),
@@ -71,7 +72,7 @@ PARTS: Final[dict[str, str]] = {
     "claims-linear": "Claims of the paper: linear stability",
     "claims-numerics": "Claims of the paper: its numerics",
     "claims-onset": "Claims of the paper: how a round cell sets off",
-    "claims-modes": "Claims of the paper: gliding and turning cells",
+    "claims-modes": "Claims of the paper: motility modes",
     "claims-robustness": "Claims of the paper: starts and transitions",
     "claims-trends": "Claims of the paper: trends with the adhesion parameters",
 }
