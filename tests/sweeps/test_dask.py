@@ -111,7 +111,7 @@ def test_a_killed_scheduler_ends_the_sweep_with_a_line_and_its_rows_kept(tmp_pat
     cluster.end()
     cc.open_sweep(tmp_path / "out").collect()
     kept = len(cc.open_sweep(tmp_path / "out").table())
-    assert 2 <= kept < RUNS
+    assert 1 <= kept < RUNS  # a chunk may hold a single run
     again = cc.sweep(grid(0.0), tmp_path / "out", InProcess(), t_end=0.1)
     assert rows(again) == alone(tmp_path / "alone")
 
