@@ -17,22 +17,11 @@ from cellcrawl.modes import Classification, classify, classify_track, combine
 from cellcrawl.modes.synthetic import RECIPES, synthetic_tracks
 from cellcrawl.observables import turning_events
 from cellcrawl.parameters import Parameters
+from cellcrawl.parameters.paper_cells import PAPER_MODES
 from cellcrawl.plot.style import PAGE, RIM, TRACK, paper_figure
 from cellcrawl.simulation import simulate
 from cellcrawl.starts import RandomPerturbation
 
-PAPER_MODES = {
-    (16, 600): "gliding",
-    (56, 560): "gliding",
-    (24, 540): "rotational",
-    (26, 600): "zigzag",
-    (36, 560): "zigzag",
-    (38, 580): "other",
-    (40, 540): "other",
-    (40, 600): "other",
-    (44, 560): "other",
-}
-"""The named points of the paper's Fig. 4 and its labels."""
 SURE = 0.9
 """A wrong name with at least this confidence is a bad mistake."""
 _TURNS_SHOWN = 0.25  # least range of a heading that is drawn, so that a straight one looks straight

@@ -115,6 +115,20 @@ def checked_values(what: str, given: Mapping[str, Any]) -> dict[str, np.ndarray]
     return values
 
 
+def two_axes(what: str, ranges: Mapping[str, Any]) -> dict[str, np.ndarray]:
+    """Return the increasing values of the two parameters of a map, or raise `InputError`."""
+    values = checked_values(what, ranges)
+    if len(values) != 2:
+        raise InputError(
+            f"{what} is over two parameters, not {len(values)}: give the values of two, "
+            "as in r_on=[...], zeta_1=[...]"
+        )
+    for name, array in values.items():
+        if array.ndim != 1 or array.size < 2 or not np.all(np.diff(array) > 0.0):
+            raise InputError(f"{name} must be at least two values, increasing")
+    return values
+
+
 def checked_shapes(k: np.ndarray, values: Mapping[str, np.ndarray]) -> None:
     """Raise `InputError` unless the wavenumbers and values broadcast together."""
     try:

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from cellcrawl.errors import InputError
-from cellcrawl.linear.characteristic import characteristic, checked_values
+from cellcrawl.linear.characteristic import characteristic, two_axes
 from cellcrawl.linear.level_curves import level_curves
 from cellcrawl.linear.modes import fastest_wavenumber, unstable_count
 from cellcrawl.linear.theory import growth_rates
@@ -62,7 +62,7 @@ def stability_map(
     True
     """
     wavenumbers = _wavenumbers(k)
-    (first, x), (second, y) = _axes(ranges).items()
+    (first, x), (second, y) = two_axes("a stability map", ranges).items()
     if x.size * y.size * len(wavenumbers) > _MOST:
         raise InputError(
             f"a map of {x.size} x {y.size} points for {len(wavenumbers)} wavenumbers is too large: "
@@ -121,7 +121,9 @@ def marginal_curves(parameters: Parameters, k: int, **ranges: Any) -> list[np.nd
     InputError
         As for `stability_map`.
     """
-    return _curves(parameters, whole_number("k", k, 0, _HIGHEST), _axes(ranges))
+    return _curves(
+        parameters, whole_number("k", k, 0, _HIGHEST), two_axes("a stability map", ranges)
+    )
 
 
 def curves_in(stability: xr.Dataset, k: int) -> list[np.ndarray]:
@@ -196,16 +198,3 @@ def _wavenumbers(k: Any) -> list[int]:
     if given.ndim > 1 or not given.size:
         raise InputError("k must be one wavenumber or a sequence of them")
     return list(dict.fromkeys(whole_number("k", at, 0, _HIGHEST) for at in given.ravel()))
-
-
-def _axes(ranges: Mapping[str, Any]) -> dict[str, np.ndarray]:
-    values = checked_values("a stability map", ranges)
-    if len(values) != 2:
-        raise InputError(
-            f"a stability map is over two parameters, not {len(values)}: give the values of two, "
-            "as in r_on=[...], zeta_1=[...]"
-        )
-    for name, array in values.items():
-        if array.ndim != 1 or array.size < 2 or not np.all(np.diff(array) > 0.0):
-            raise InputError(f"{name} must be at least two values, increasing")
-    return values

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from cellcrawl.errors import InputError
-from cellcrawl.linear.characteristic import checked_values
+from cellcrawl.linear.characteristic import two_axes
 from cellcrawl.linear.level_curves import level_curves
 from cellcrawl.one_dimensional import drive
 from cellcrawl.one_dimensional.cell import FREE, Anchoring, checked_cell
@@ -70,7 +70,7 @@ def phase_diagram(
         For other than two parameters, unknown names or starts, or values out of range.
     """
     checked_cell(parameters, anchoring)
-    axes = _axes(ranges)
+    axes = two_axes("a phase diagram", ranges)
     starts = [starts] if isinstance(starts, str) else list(starts)
     if not starts:
         raise InputError(f"starts is empty: known names: {', '.join(STARTS)}")
@@ -153,7 +153,7 @@ def boundaries(
     """
     checked_cell(parameters, anchoring)
     one_of("which", which, BOUNDARIES)
-    (first, x), (second, y) = _axes(ranges).items()
+    (first, x), (second, y) = two_axes("a phase diagram", ranges).items()
 
     def field(at_x: np.ndarray, at_y: np.ndarray) -> np.ndarray:
         values = {first: np.asarray(at_x, float), second: np.asarray(at_y, float)}
@@ -182,16 +182,3 @@ def _differ(codes: np.ndarray, settled: np.ndarray) -> np.ndarray:
     highest = np.where(settled, codes, -1).max(axis=0)
     different: np.ndarray = highest > lowest
     return different
-
-
-def _axes(ranges: dict[str, Any]) -> dict[str, np.ndarray]:
-    values = checked_values("a phase diagram", ranges)
-    if len(values) != 2:
-        raise InputError(
-            f"a phase diagram is over two parameters, not {len(values)}: give the values of two, "
-            "as in r_on=[...], zeta_1=[...]"
-        )
-    for name, array in values.items():
-        if array.ndim != 1 or array.size < 2 or not np.all(np.diff(array) > 0.0):
-            raise InputError(f"{name} must be at least two values, increasing")
-    return values

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 from cellcrawl.parameters import Parameters, Schedule
+from cellcrawl.parameters.paper_cells import PAPER_MODES
 
 LONG: Final = 100.0
 """Time of the paper's runs."""
@@ -26,16 +27,11 @@ class Cell(NamedTuple):
         return Parameters(r_on=self.r_on, zeta_1=self.zeta_1)
 
 
-NINE: Final = (
-    Cell(16, 600, "gliding", 10),
-    Cell(56, 560, "gliding", 10),
-    Cell(24, 540, "rotational", 10),
-    Cell(26, 600, "zigzag", 10),
-    Cell(36, 560, "zigzag", 15),
-    Cell(38, 580, "other", 20),
-    Cell(40, 540, "other", 20),
-    Cell(40, 600, "other", 20),
-    Cell(44, 560, "other", 20),
+_APART: Final = (10, 10, 10, 10, 15, 20, 20, 20, 20)
+
+NINE: Final = tuple(
+    Cell(*point, mode, apart)
+    for (point, mode), apart in zip(PAPER_MODES.items(), _APART, strict=True)
 )
 """In the order of the paper's Fig. 4 B-J and Movies S1-S9."""
 

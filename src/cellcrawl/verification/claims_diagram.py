@@ -10,21 +10,10 @@ import numpy as np
 from cellcrawl.linear import growth_rates
 from cellcrawl.modes import classify, combine
 from cellcrawl.parameters import Parameters
+from cellcrawl.parameters.paper_cells import PAPER_MODES
 from cellcrawl.verification.check import Result
 from cellcrawl.verification.claims import MODES, TRENDS, claim, count, crawl
 
-NAMED: Final = {
-    (16, 600): "gliding",
-    (56, 560): "gliding",
-    (24, 540): "rotational",
-    (26, 600): "zigzag",
-    (36, 560): "zigzag",
-    (38, 580): "other",
-    (40, 540): "other",
-    (40, 600): "other",
-    (44, 560): "other",
-}
-"""The nine named cells (r_on, zeta_1) and what the paper calls them."""
 _WAVES: Final = np.arange(1, 41)
 
 
@@ -67,14 +56,14 @@ def diagram(full: bool) -> Iterator[Result]:
 def _named_cells(seeds: int) -> Result:
     verdicts = {
         point: combine(classify(crawl(*point, seed=seed)) for seed in range(1, seeds + 1))
-        for point in NAMED
+        for point in PAPER_MODES
     }
     wrong = [
         f"{point} {verdict.majority}"
         for point, verdict in verdicts.items()
-        if verdict.majority != NAMED[point]
+        if verdict.majority != PAPER_MODES[point]
     ]
-    right = [verdicts[point].majority == mode for point, mode in NAMED.items()]
+    right = [verdicts[point].majority == mode for point, mode in PAPER_MODES.items()]
     return claim(
         "the nine named cells glide, rotate, zigzag or do something else as labelled",
         MODES,

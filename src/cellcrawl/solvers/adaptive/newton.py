@@ -24,7 +24,7 @@ from cellcrawl.solvers.adaptive.rates import (
     TENSION,
     TENSION_RATE,
 )
-from cellcrawl.solvers.adaptive.staggered import HALO, difference_ahead, fill_halo
+from cellcrawl.solvers.adaptive.staggered import HALO, difference_ahead, dot, fill_halo
 from cellcrawl.solvers.cyclic import FACTOR_ROWS, factor_cyclic_tridiagonal, solve_factored
 
 # rows of a matrix: how U answers to n and to sigma, how n answers to sigma within a step, kappa
@@ -52,22 +52,6 @@ def _blend(a: np.ndarray, out: np.ndarray) -> None:
         out[i] = a[i] + _COMPACT * (a[i - _1] + a[i + _1])
     out[0] = a[0] + _COMPACT * (a[last] + a[1])
     out[last] = a[last] + _COMPACT * (a[last - 1] + a[0])
-
-
-@kernel
-def _dot(a: np.ndarray, b: np.ndarray) -> float:
-    """Sum of products over the nodes, in eight interleaved parts."""
-    s0 = s1 = s2 = s3 = s4 = s5 = s6 = s7 = 0.0
-    for i in range(0, a.size, 8):
-        s0 += a[i] * b[i]
-        s1 += a[i + 1] * b[i + 1]
-        s2 += a[i + 2] * b[i + 2]
-        s3 += a[i + 3] * b[i + 3]
-        s4 += a[i + 4] * b[i + 4]
-        s5 += a[i + 5] * b[i + 5]
-        s6 += a[i + 6] * b[i + 6]
-        s7 += a[i + 7] * b[i + 7]
-    return ((s0 + s1) + (s2 + s3)) + ((s4 + s5) + (s6 + s7))
 
 
 @kernel
@@ -129,7 +113,7 @@ def factor(
     pull_back = 0.0
     for i in range(nodes):
         pull_back += by_tension[i]
-    slope = pull_back + _dot(by_linkers, answer)
+    slope = pull_back + dot(by_linkers, answer)
     gain = c * edge[TENSION_RATE, 0] / per_spacing
     matrix[SCALARS, 0] = gain
     matrix[SCALARS, 1] = 1.0 / max(1.0 - gain * slope, _LEAST_PIVOT)
@@ -156,7 +140,7 @@ def solve(
     bound, speed, angle = matrix[_SCRATCH], matrix[_SCRATCH + 1], matrix[_SCRATCH + 2]
     _blend(n[HALO : HALO + nodes], bound)
     solve_factored(matrix[_LINKERS : _LINKERS + FACTOR_ROWS], bound)
-    asked = gain * _dot(by_linkers, bound)
+    asked = gain * dot(by_linkers, bound)
     sigma = (scalars[TENSION] + asked) * matrix[SCALARS, 1]
     for i in range(np.uint64(nodes)):
         bound[i] += sigma * answer[i]
@@ -170,10 +154,10 @@ def solve(
         w[i + _HALO] = angle[i]
     for k in range(HALO):
         w[k] = n[k] = w[HALO + nodes + k] = n[HALO + nodes + k] = 0.0
-    growth = _dot(by_linkers, bound) + sigma * matrix[SCALARS, 2]
+    growth = dot(by_linkers, bound) + sigma * matrix[SCALARS, 2]
     first = 0.5 * c * (speed[0] + speed[nodes - 1])
     scalars[TENSION] += gain * growth  # sigma, written so that sigma - G A stays to rounding
     scalars[AREA] += c * growth / per_spacing
-    scalars[LENGTH] += c * _dot(speed, kappa) / per_spacing
+    scalars[LENGTH] += c * dot(speed, kappa) / per_spacing
     scalars[ORIGIN_X] += first * math.sin(state[HALO])
     scalars[ORIGIN_Y] -= first * math.cos(state[HALO])

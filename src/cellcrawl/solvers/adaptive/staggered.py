@@ -167,19 +167,26 @@ def total(a: np.ndarray, nodes: int) -> float:
 
 
 @kernel
-def sum_of_squares(a: np.ndarray, nodes: int) -> float:
-    """Sum of squares over the nodes, like `total`."""
+def dot(a: np.ndarray, b: np.ndarray) -> float:
+    """Sum of products of arrays without halos, like `total`."""
     s0 = s1 = s2 = s3 = s4 = s5 = s6 = s7 = 0.0
-    for i in range(HALO, HALO + nodes, 8):
-        s0 += a[i] * a[i]
-        s1 += a[i + 1] * a[i + 1]
-        s2 += a[i + 2] * a[i + 2]
-        s3 += a[i + 3] * a[i + 3]
-        s4 += a[i + 4] * a[i + 4]
-        s5 += a[i + 5] * a[i + 5]
-        s6 += a[i + 6] * a[i + 6]
-        s7 += a[i + 7] * a[i + 7]
+    for i in range(0, a.size, 8):
+        s0 += a[i] * b[i]
+        s1 += a[i + 1] * b[i + 1]
+        s2 += a[i + 2] * b[i + 2]
+        s3 += a[i + 3] * b[i + 3]
+        s4 += a[i + 4] * b[i + 4]
+        s5 += a[i + 5] * b[i + 5]
+        s6 += a[i + 6] * b[i + 6]
+        s7 += a[i + 7] * b[i + 7]
     return ((s0 + s1) + (s2 + s3)) + ((s4 + s5) + (s6 + s7))
+
+
+@kernel
+def sum_of_squares(a: np.ndarray, nodes: int) -> float:
+    """Sum of squares over the nodes."""
+    inner = a[HALO : HALO + nodes]
+    return dot(inner, inner)
 
 
 @kernel
