@@ -81,7 +81,8 @@ def centroid(fields: np.ndarray, shape: np.ndarray) -> tuple[float, float]:
 def enclose(wanted: float, fields: np.ndarray, shape: np.ndarray) -> None:
     """Scale the outline about its centroid, in place, to enclose the area ``wanted``.
 
-    ``shape`` is its `measure` before and after.
+    ``shape`` is its `measure` before and after: made anew, so that a step has the same bits whether
+    it follows another in the same call or not.
     """
     x, y = fields[X], fields[Y]
     center_x, center_y = centroid(fields, shape)
@@ -89,9 +90,7 @@ def enclose(wanted: float, fields: np.ndarray, shape: np.ndarray) -> None:
     for i in range(x.size):
         x[i] = center_x + scale * (x[i] - center_x)
         y[i] = center_y + scale * (y[i] - center_y)
-        shape[KAPPA, i] /= scale
-        for row in (XU, YU, XUU, YUU, SPEED, PACE, SEGMENT):
-            shape[row, i] *= scale
+    measure(fields, shape)
 
 
 @kernel
