@@ -41,7 +41,7 @@ def test_a_long_run_is_measured_over_its_second_half_a_short_one_at_its_end():
 def test_references_are_read_back_and_others_computed(tmp_path):
     case = Case(26, 600, t_end=0.3)
     recorded = {"r_on": 26, "zeta_1": 600, "elasticity": "printed", "D": 0.05, "random": False}
-    values = dict.fromkeys(("length", "tension", "area", "centroid_x", "centroid_y"), [7.0])
+    values = {name: [7.0] for name in ("length", "tension", "area", "centroid_x", "centroid_y")}
     path = tmp_path / "references.json"
     machine.write(path, {"references": [{**recorded, "t_end": 0.3, "times": [0.3], **values}]})
     assert np.all(References(path).of(case) == 7.0)

@@ -121,8 +121,8 @@ def test_between_two_steps_tension_keeps_step_with_area_to_their_order(law: cc.P
         every = 5.0 / 6.0 * dt
         options = {"solver": "spline", "nodes": 64, "dt": dt, "save_every": every}
         drifts.append(area_drift(cc.simulate(law, 1.2, start=check_start(law), **options), law))
-    assert drifts[1] < 1e-6
-    assert math.log2(drifts[0] / drifts[1]) > 2.6
+    assert drifts[1] < 1e-9
+    assert math.log2(drifts[0] / drifts[1]) > 3.3
 
 
 def test_forces_balance_at_every_node(law: cc.Parameters) -> None:

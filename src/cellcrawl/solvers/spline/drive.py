@@ -19,6 +19,7 @@ from cellcrawl.solvers.spline.outline import (
     XU,
     YU,
     copy,
+    enclose,
     measure,
     sharpest_turn,
     unevenness,
@@ -86,6 +87,7 @@ def advance(
         between_ends(ends, 0.0, edge)
         if unevenness(shape) > UNEVEN:
             remesh(fields, shape, spare)
+            enclose(scalars[AREA], fields, shape)
             code, marker = solve_balance(fields, scalars[TENSION], shape, edge)
             if code != BALANCED:
                 copy(before_fields, fields)

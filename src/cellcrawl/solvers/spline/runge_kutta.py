@@ -4,8 +4,8 @@ ARK3(2)4L[2]SA of Kennedy & Carpenter (Appl. Numer. Math. 44, 139, 2003). Marker
 its explicit part, diffusion and tension its implicit, L-stable part. A stage's markers are known
 before its diffusion, and both before its tension, so that every implicit solve is small: a cyclic
 tridiagonal system, then one number. The area that the tension stands for is weighed like it, stage
-by stage, and the outline scaled to it at the end of the step: otherwise the errors of step and
-remeshing add up in ``sigma - G A``, and nothing takes them away.
+by stage, and the outline scaled to it at the end of the step: otherwise errors of the step add up
+in ``sigma - G A``, and nothing takes them away.
 """
 
 from __future__ import annotations
