@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import tempfile
 import time
 from pathlib import Path
 from typing import Any
@@ -32,11 +33,10 @@ OPTIONS: dict[str, dict[str, Any]] = {
 COLOURS = {"adaptive": "#1f77b4", "paper": "#d1495b", "spline": "#2a9d8f"}
 
 
-def measured(solver: str, t_end: float) -> dict[str, Any]:
-    """Return the run window by window, resumed from a file so that memory stays flat."""
+def measured(solver: str, t_end: float, path: Path) -> dict[str, Any]:
+    """Return the run window by window, read from the file at ``path`` so that memory stays flat."""
     p = cc.Parameters(r_on=CELL[0], zeta_1=CELL[1])
     began = time.perf_counter()
-    path = Path(f"long-{solver}.nc")
     run = cc.simulate(
         p, t_end, start=check_start(p), solver=solver, save_every=0.1, output=path,
         overwrite=True, **OPTIONS[solver],
@@ -58,7 +58,6 @@ def measured(solver: str, t_end: float) -> dict[str, Any]:
         rows["period"].append(exact.mean_period(part["time"].values, values))
     told = {"status": run.attrs["status"], "reached": reached, "seconds": seconds}
     run.close()
-    path.unlink()
     return {**told, "options": OPTIONS[solver], **rows}
 
 
@@ -97,7 +96,9 @@ def main() -> None:
     if not given.draw:
         found = {}
         for solver in OPTIONS:
-            found[solver] = measured(solver, getattr(given, solver))
+            with tempfile.TemporaryDirectory() as folder:
+                until = getattr(given, solver)
+                found[solver] = measured(solver, until, Path(folder) / "run.nc")
             told = {name: found[solver][name] for name in ("status", "reached", "seconds")}
             print(solver, told, max(map(abs, found[solver]["off_law"])), flush=True)
         machine.write(path, {"cell": list(CELL), "solvers": found})

@@ -16,6 +16,8 @@ import math
 import statistics
 import subprocess
 import sys
+import tempfile
+import time
 from pathlib import Path
 from typing import Any
 
@@ -106,6 +108,18 @@ def timed(old: Version, new: Version, turns: int, **job: Any) -> dict[str, Any]:
     }
 
 
+def diagrams(python: str, grid: Path, turns: int) -> list[float]:
+    """Return the seconds of a whole sweep, from a cold shell to its picture, each time anew."""
+    seconds = []
+    for _ in range(turns):
+        with tempfile.TemporaryDirectory() as folder:
+            command = [python, "-m", "cellcrawl", "sweep", str(grid), "--output", f"{folder}/made"]
+            began = time.perf_counter()
+            subprocess.run(command, check=True, capture_output=True)
+            seconds.append(time.perf_counter() - began)
+    return seconds
+
+
 def errors(found: dict[str, Any], truth: dict[str, Any]) -> dict[str, float] | None:
     """Return the largest errors over the reference's times, None where the run ended before."""
     rows = [i for i, t in enumerate(found["time"]) for s in truth["times"] if abs(t - s) < 1e-9]
@@ -130,6 +144,7 @@ def main() -> None:
     parser.add_argument("--references", type=Path, help="of `cellcrawl bench references`")
     parser.add_argument("--output", type=Path, help="folder for old-and-new.json")
     parser.add_argument("--turns", type=int, default=7)
+    parser.add_argument("--diagram", type=Path, help="grid file of a sweep to time as a whole")
     parser.add_argument("--law-until", type=float, default=1000.0)
     given = parser.parse_args()
     old, new = Version(given.old), Version(given.new)
@@ -145,6 +160,13 @@ def main() -> None:
                 f"x {row['ratio_of_medians']:.2f} (medians), x {row['ratio_of_minima']:.2f}",
                 flush=True,
             )
+    if given.diagram is not None:
+        pairs = [
+            [*diagrams(given.old, given.diagram, 1), *diagrams(given.new, given.diagram, 1)]
+            for _ in range(3)
+        ]
+        data["diagram"] = {"grid": given.diagram.name, "old_and_new_seconds": pairs}
+        print(f"diagram of {given.diagram.name}, old and new: {pairs}", flush=True)
     references = json.loads(given.references.read_text("utf-8")) if given.references else {}
     for truth in references.get("references", []):
         if truth["t_end"] != 100.0:

@@ -117,9 +117,11 @@ def _long(quick: bool, known: References) -> _Result:
     for row in _table(long.Row, long.errors_by_tolerance(quick, known)):
         rows.append(row)
     targets = list(_table(Target, long.measure(quick, known, rows)))
+    amplified = list(_table(long.Amplified, long.amplification(quick)))
     data = {
         "targets": [row._asdict() for row in targets],
         "errors": [row._asdict() for row in rows],
+        "amplified": [row._asdict() for row in amplified],
     }
     return _Result(data, None)
 
