@@ -49,25 +49,24 @@ class TensionLaw:
         sides = {
             conditions.tension_rate(time, before=side) for time in breaks for side in (False, True)
         }
-        self._constant = len(sides) == 1
+        self._constant_rate = sides.pop() if len(sides) == 1 else None
 
     def next_look(self, time: float) -> float:
         """Return the next time at which ``G`` may jump or a ramp of it begin or end."""
-        return math.inf if self._constant else self._conditions.next_break(time)
+        changes = self._constant_rate is None
+        return self._conditions.next_break(time) if changes else math.inf
 
     def check(self, seen: Instant) -> Breakdown | None:
         """Take in the cell at a time not before the last; return how it breaks the law, or None."""
         if self.time == -math.inf:
             self._tension = seen.tension
         elif seen.time > self.time:
-            first = self._conditions.tension_rate(self.time)
-            last = self._conditions.tension_rate(seen.time, before=True)
+            first, last = self._rate(self.time), self._rate(seen.time, before=True)
             change = seen.area - self._area
             self._tension += 0.5 * (first + last) * change
             self._slack += 0.5 * abs((last - first) * change)
         self.time, self._area = seen.time, seen.area
-        rate = self._conditions.tension_rate(seen.time)
-        scale = max(rate * seen.area, abs(seen.tension))
+        scale = max(self._rate(seen.time) * seen.area, abs(seen.tension))
         miss = abs(seen.tension - self._tension)
         if not miss <= self._tolerance * scale + self._slack:
             return Breakdown(
@@ -86,6 +85,12 @@ class TensionLaw:
                 f"allowed; {_ADVICE}",
             )
         return None
+
+    def _rate(self, time: float, *, before: bool = False) -> float:
+        """Return ``G``, which seldom changes and is asked for at every check."""
+        if self._constant_rate is not None:
+            return self._constant_rate
+        return self._conditions.tension_rate(time, before=before)
 
     def checkpoint(self) -> np.ndarray:
         """Return the state from which `restore` goes on."""
