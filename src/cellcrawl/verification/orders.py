@@ -174,9 +174,15 @@ def of_paper(full: bool) -> Iterator[Result]:
     yield _farthest("order in time of the paper's scheme, check start, t = 2", in_time, 1.0, 0.1)
     yield _farthest("order in space of the paper's scheme, check start, t = 2", in_space, 2.0, 0.1)
     by_time, by_space = manufactured_order_in_time(), manufactured_order_in_space()
-    for what, orders, target in (("time", by_time, 1.0), ("space", by_space, 2.0)):
-        told = f"order in {what} of the paper's scheme, manufactured solution"
-        yield _farthest(told, np.array(list(orders.values())), target, 0.15)
+    told = "order in {} of the paper's scheme, manufactured solution"
+    yield _farthest(told.format("time"), np.array(list(by_time.values())), 1.0, 0.15)
+    yield at_least(
+        told.format("space"),
+        min(by_space.values()),
+        1.85,
+        note="of positions on its circle more than two: closing the outline takes most of their "
+        "error away",
+    )
 
 
 STEPS: Final = (1e-3, 5e-4, 2.5e-4)
