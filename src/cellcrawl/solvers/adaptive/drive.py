@@ -49,9 +49,7 @@ _ITERATE, _CORRECTION, _RESIDUAL, _HISTORY = range(DIFFERENCES, DIFFERENCES + 4)
     LAST_LOOK,
     PEAK,
     FORMATION,
-    LARGEST_GAP,
-    LARGEST_EXCESS,
-) = range(12)
+) = range(10)
 CONTROLS: Final = 16
 # entries of `counters`
 (
@@ -335,9 +333,7 @@ def run(
         if counters[STEPS] % _LOOK_EVERY == 0:
             span = nodes + 2 * HALO
             normalise(table[0, 2 * span : 3 * span], nodes)
-            gap, excess = project(table[0], nodes, work)
-            control[LARGEST_GAP] = max(control[LARGEST_GAP], gap)
-            control[LARGEST_EXCESS] = max(control[LARGEST_EXCESS], excess)
+            project(table[0], nodes, work)
             fill_halo(table[0, span : 2 * span], nodes)
             misses, control[CONTRAST] = missed(table[0], nodes, work)
             control[FORMATION] = formation(table[0, span : 2 * span], nodes)
@@ -351,7 +347,7 @@ def run(
             most = allowance(allowed, control[CONTRAST], formed)
             if misses > most and nodes < nodes_range[1]:
                 counters[CHECK_DUE] = FINER
-            elif misses > HOPELESS * allowed:
+            elif misses > HOPELESS * most:
                 return UNRESOLVED
             elif counters[STEPS] % _COARSEN_EVERY == 0 and nodes > nodes_range[0]:
                 if not formed and COARSER_MISSES * misses < COARSEN * most:

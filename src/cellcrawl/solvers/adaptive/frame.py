@@ -119,6 +119,7 @@ def _whole_cell(shape: Shape) -> dict[str, Any]:
         "centroid_x": center_x + float(scalars[ORIGIN_X]),
         "centroid_y": center_y + float(scalars[ORIGIN_Y]),
         "surely_simple": shape.star_shaped,
+        "closure_gap": max(shape.closure_error, shape.area_error),
     }
 
 

@@ -15,6 +15,7 @@ from cellcrawl.solvers.adaptive.differences import DIFFERENCES
 from cellcrawl.solvers.adaptive.frame import Shape, frame, instant, shape_between
 from cellcrawl.solvers.adaptive.mesh import MESH_ROWS, edge_on_mesh, hold, lay_out
 from cellcrawl.solvers.adaptive.newton import MATRIX_ROWS
+from cellcrawl.solvers.adaptive.projection import project
 from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, renew_rates
 from cellcrawl.solvers.adaptive.staggered import HALO
 from cellcrawl.solvers.adaptive.step_error import relative_size
@@ -25,7 +26,7 @@ from cellcrawl.validation import real_number, whole_number
 _STEPS_PER_CALL = 5000  # between two looks at Ctrl-C
 _START_NODES = 1024
 _USUAL_RTOL = 1e-4
-_TIGHT_RTOL = 1e-6  # below it a start is sampled more finely
+_TIGHT_RTOL = 1e-5  # below it a start is sampled more finely
 _FIRST_STEP = 0.2  # times the root of the tolerance, relative to the rate of change
 _SHORT = 1e-3  # a step at which the density of the nodes relaxes at its full rate
 _PLACES = 1024  # at which parameters that vary along the edge are read
@@ -65,7 +66,7 @@ class AdaptiveSolver(Solver):
         self._min_nodes = whole_number("min_nodes", min_nodes, counts[0], self._max_nodes)
         self._control = np.zeros(drive.CONTROLS)
         self._counters = np.zeros(drive.COUNTERS, np.int64)
-        self._tally = np.zeros(4)  # fewest nodes, most nodes, regrids, largest closure error
+        self._tally = np.zeros(5)  # fewest nodes, most nodes, regrids, largest errors mended
         self._control[drive.TIME] = self._control[drive.PREVIOUS_TIME] = time
         self._measured: tuple[float, Shape] | None = None
         self._counters[drive.RESTARTING] = 1
@@ -136,6 +137,7 @@ class AdaptiveSolver(Solver):
         steps = (time - last) / self._control[drive.STEP]
         shape = shape_between(steps, int(self._counters[drive.ORDER]), self._table)
         self._tally[3] = max(self._tally[3], shape.closure_error)
+        self._tally[4] = max(self._tally[4], shape.area_error)
         self._measured = (time, shape)
         return shape
 
@@ -157,6 +159,11 @@ class AdaptiveSolver(Solver):
         self._log_rate = np.array(checkpoint["log_rate"], dtype=float)
         self._matrix = np.array(checkpoint["matrix"], dtype=float)
 
+    @property
+    def invariant_tolerance(self) -> float:
+        """What is mended of closure and area in a few steps is far below the tolerance."""
+        return self._rtol
+
     def options(self) -> dict[str, Any]:
         return {
             "nodes": self._nodes,
@@ -166,7 +173,7 @@ class AdaptiveSolver(Solver):
         }
 
     def diagnostics(self) -> dict[str, float]:
-        fewest, most, regrids, closure = (float(value) for value in self._tally)
+        fewest, most, regrids, closure, area = (float(value) for value in self._tally)
         return {
             "steps": int(self._counters[drive.STEPS]),
             "rejected_steps": int(self._counters[drive.REJECTED]),
@@ -176,7 +183,7 @@ class AdaptiveSolver(Solver):
             "most_nodes": int(most),
             "regrids": int(regrids),
             "largest_closure_error": closure,
-            "largest_area_error": float(self._control[drive.LARGEST_EXCESS]),
+            "largest_area_error": area,
         }
 
     def _begin(self, start: CellState) -> None:
@@ -197,6 +204,7 @@ class AdaptiveSolver(Solver):
         differences = np.zeros((DIFFERENCES, layout.size(nodes)))
         differences[0] = layout.from_cell(start, nodes)
         self._hold(differences)
+        project(self._table[0], nodes, self._work)
         self._log_rate = np.full(nodes, math.log(self._conditions.at(self.time).r_p))
         if not self._restart():
             raise InputError(
