@@ -112,7 +112,7 @@ def is_long_enough(dataset: xr.Dataset) -> bool:
 
 def _classify(track: Track, cell_radius: float | None) -> Classification:
     smoothed = smooth(track)
-    still = measure_rest(track, smoothed.noise)
+    still = measure_rest(smoothed.sound.clean, smoothed.noise)
     at_rest = max(rule.stationary(still, cell_radius), key=_fit)
     if at_rest.fit >= 0.5:
         return Classification("stationary", at_rest.fit, {}, still, at_rest.words)

@@ -10,7 +10,7 @@ import xarray as xr
 
 from cellcrawl.errors import InputError
 from cellcrawl.observables.inputs import records_with
-from cellcrawl.validation import real_array
+from cellcrawl.validation import real_array, without_masked
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,8 @@ def as_track(run: Any, x: Any = None, y: Any = None, *, at_least: int = 2) -> Tr
     run : Dataset, Track or array_like, shape (record,)
         A run, or the times of a track; times must rise and need not be even.
     x, y : array_like, shape (record,), optional
-        Positions at these times; left out with a run.
+        Positions at these times; left out with a run. Records that are masked in any of the three
+        (NumPy masked arrays) are left out.
     at_least : int
         The fewest records that will do.
 
@@ -68,6 +69,7 @@ def as_track(run: Any, x: Any = None, y: Any = None, *, at_least: int = 2) -> Tr
     else:
         if x is None or y is None:
             raise InputError("a run is a Dataset; a track needs times, x and y, arrays of one size")
+        run, x, y = without_masked(run, x, y)
         times = real_array("t", run, (None,))
         track = Track(times, _positions("x", x, times.size), _positions("y", y, times.size))
     if track.t.size < at_least:
