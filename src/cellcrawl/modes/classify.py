@@ -10,6 +10,8 @@ import numpy as np
 import xarray as xr
 
 from cellcrawl.modes import rule
+from cellcrawl.modes.confidence import trust
+from cellcrawl.modes.evidence import Evidence, gather
 from cellcrawl.modes.measures import measure, measure_rest, onset
 from cellcrawl.modes.result import Classification, Measures
 from cellcrawl.observables.inputs import records_with
@@ -25,7 +27,7 @@ _LATER_STARTS = (0.0, 1 / 9, 2 / 9, 3 / 9)
 """Where the transient may end, as parts of what follows the onset."""
 _PREFER_EARLY = 0.3  # a start that leaves out the part p must fit better by this times p
 _FEW_TURNS = 3  # a track that has turned less often, and less than once round, may be any mode
-_UNTOLD = 0.6  # the confidence it can have
+_SURE = 0.8  # below this confidence the reason is told
 
 
 def classify(dataset: xr.Dataset, *, use_size: bool = True) -> Classification:
@@ -111,38 +113,80 @@ def is_long_enough(dataset: xr.Dataset) -> bool:
 
 
 def _classify(track: Track, cell_radius: float | None) -> Classification:
+    named, evidence = name_by_rule(track)
+    trusted = _with_confidence(named, evidence)
+    return trusted if cell_radius is None else _with_size(trusted, cell_radius)
+
+
+def _with_confidence(named: Classification, evidence: Evidence) -> Classification:
+    """Say how often such an answer is right, and take it back if "other" is right more often."""
+    found = trust(named.mode, evidence)
+    wild = "a record far off its path was left out" if evidence.wild else ""
+    if named.mode != "other" and found.right < 0.5 and found.other > found.right:
+        why = found.against or named.doubt or "too little to tell"
+        doubt = _joined(f"not surely {named.mode}: {why}", wild)
+        return replace(named, mode="other", confidence=found.other, doubt=doubt)
+    weak = found.against if found.right < _SURE else ""
+    return replace(named, confidence=found.right, doubt=_joined(named.doubt, weak, wild))
+
+
+def _with_size(named: Classification, cell_radius: float) -> Classification:
+    """Judge by the size of the cell too: it enters as it fits, for it is no matter of chance."""
+    still, wide = rule.against_size(named.measures, cell_radius)
+    if still.fit >= 0.5:
+        sure = max(still.fit, named.confidence if named.mode == "stationary" else 0.0)
+        return replace(named, mode="stationary", confidence=sure, doubt=still.words)
+    if named.mode != "rotational":
+        return replace(named, confidence=named.confidence * (1.0 - still.fit))
+    fits = {**named.memberships, "rotational": min(named.memberships["rotational"], wide.fit)}
+    if wide.fit >= 0.5:
+        sure = named.confidence * wide.fit
+        doubt = _joined(named.doubt, wide.words if wide.fit < 1.0 else "")
+        return replace(named, confidence=sure, doubt=doubt, memberships=fits)
+    sure = 1.0 - named.confidence * wide.fit
+    doubt = _joined(f"not rotational: {wide.words}", named.doubt)
+    return Classification("other", sure, fits, named.measures, doubt)
+
+
+def _joined(*doubts: str) -> str:
+    return ", ".join(dict.fromkeys(filter(None, doubts)))
+
+
+def name_by_rule(track: Track) -> tuple[Classification, Evidence]:
+    """Name the form of a track by the rule, its fit as confidence, and gather what that is worth."""
     smoothed = smooth(track)
     still = measure_rest(smoothed.sound.clean, smoothed.noise)
-    at_rest = max(rule.stationary(still, cell_radius), key=_fit)
+    at_rest = max(rule.stationary(still), key=_fit)
     if at_rest.fit >= 0.5:
-        return Classification("stationary", at_rest.fit, {}, still, at_rest.words)
+        named = Classification("stationary", at_rest.fit, {}, still, at_rest.words)
+        return named, gather(smoothed, still, still, {"stationary": at_rest.fit, "": 0.0})
     first = onset(smoothed)
     left = smoothed.t.size - first
     starts = _LATER_STARTS if left > 2 * FEWEST_RECORDS else _LATER_STARTS[:1]
-    best = _apply_rule(smoothed, first, cell_radius)
+    best = _apply_rule(smoothed, first)
     best_score = _score(best, 0.0)
     for later in starts[1:]:
         if best_score >= 1.0 - _PREFER_EARLY * later:
             break
-        result = _apply_rule(smoothed, first + int(later * left), cell_radius)
+        result = _apply_rule(smoothed, first + int(later * left))
         if _score(result, later) > best_score:
             best, best_score = result, _score(result, later)
-    clear = min(1.0 - at_rest.fit, rule.resolved(best.measures).fit)
     seen = replace(
         best.measures, extent=still.extent, late_extent=still.late_extent, disorder=still.disorder
     )
-    return replace(best, confidence=min(best.confidence, clear), measures=seen)
+    best = replace(best, measures=seen)
+    return best, gather(smoothed, seen, still, best.memberships)
 
 
 def _score(result: Classification, later: float) -> float:
     return result.confidence - _PREFER_EARLY * later if result.mode != "other" else 0.0
 
 
-def _apply_rule(track: SmoothTrack, start: int, cell_radius: float | None) -> Classification:
+def _apply_rule(track: SmoothTrack, start: int) -> Classification:
     found = measure(track, start)
     conditions = {
         "gliding": rule.gliding(found),
-        "rotational": rule.rotational(found, cell_radius),
+        "rotational": rule.rotational(found),
         "zigzag": rule.zigzag(found),
     }
     fits = {mode: min(map(_fit, held)) for mode, held in conditions.items()}
@@ -158,10 +202,9 @@ def _apply_rule(track: SmoothTrack, start: int, cell_radius: float | None) -> Cl
         conditions, key=lambda name: sum(map(_fit, conditions[name])) / len(conditions[name])
     )
     doubt = f"not {nearest}: {min(conditions[nearest], key=_fit).words}"
-    sure = 1.0 - fits[mode]
     if found.swings < _FEW_TURNS and abs(found.turned) < 2.0 * math.pi:
-        sure, doubt = min(sure, _UNTOLD), "it turns too few times to tell"
-    return Classification("other", sure, fits, found, doubt)
+        doubt = "it turns too few times to tell"
+    return Classification("other", 1.0 - fits[mode], fits, found, doubt)
 
 
 def _fit(condition: rule.Condition) -> float:

@@ -2,41 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from cellcrawl.errors import InputError
+from cellcrawl.microscopy.track import Track
 from cellcrawl.observables.inputs import records_with
 from cellcrawl.validation import real_array, without_masked
-
-
-@dataclass(frozen=True, eq=False)
-class Track:
-    """Positions of a cell over time; the units are those of whoever measured them.
-
-    Attributes
-    ----------
-    t : ndarray, shape (record,)
-        Times, rising.
-    x, y : ndarray, shape (record,)
-        Position of the centroid.
-    length_units, time_units : str
-        Names of the units, "" where they are the user's own.
-    """
-
-    t: np.ndarray
-    x: np.ndarray
-    y: np.ndarray
-    length_units: str = ""
-    time_units: str = ""
-
-    @property
-    def duration(self) -> float:
-        """Time from the first record to the last."""
-        return float(self.t[-1] - self.t[0])
 
 
 def as_track(run: Any, x: Any = None, y: Any = None, *, at_least: int = 2) -> Track:

@@ -1,0 +1,86 @@
+"""Fit the confidence of answers to tracks of known mode, and see how well it holds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cellcrawl.modes.classify import name_by_rule
+from cellcrawl.modes.confidence import Curve
+from cellcrawl.modes.evidence import Evidence
+from cellcrawl.modes.synthetic import SyntheticTrack
+from cellcrawl.observables.track import as_track
+
+ANSWERS = ("gliding", "rotational", "zigzag", "other", "stationary")
+_BENDS = (0.1, 0.3, 0.5, 0.7, 0.9)  # quantiles
+_ENDS = (0.005, 0.995)
+_RIDGE = 1.0
+_DIGITS = 5
+
+
+class Answers(NamedTuple):
+    """Answers of the rule to tracks of known mode."""
+
+    given: np.ndarray
+    right: np.ndarray
+    evidence: np.ndarray
+
+
+def answers(tracks: Iterable[SyntheticTrack]) -> Answers:
+    """Name tracks by the rule and gather the evidence: modes (track,), evidence (track, number)."""
+    given, right, evidence = [], [], []
+    for track in tracks:
+        named, seen = name_by_rule(as_track(track.t, track.x, track.y))
+        given.append(named.mode)
+        right.append(track.mode)
+        evidence.append(seen)
+    return Answers(np.array(given), np.array(right), np.array(evidence))
+
+
+def fit(known: Answers) -> dict[str, Any]:
+    """Return what `confidence.json` holds: for each answer, two curves."""
+    kept = {}
+    for mode in ANSWERS:
+        asked = known.given == mode
+        evidence, truth = known.evidence[asked], known.right[asked]
+        kept[mode] = {
+            "right": _fitted(evidence, truth == mode),
+            "other": _fitted(evidence, truth == "other"),
+        }
+    return {"evidence": list(Evidence._fields), "answers": kept}
+
+
+def _fitted(evidence: np.ndarray, true: np.ndarray) -> dict[str, Any]:
+    low, high = np.quantile(evidence, _ENDS, axis=0)
+    span = np.where(high > low, high - low, 1.0)
+    scaled = (np.clip(evidence, low, high) - low) / span
+    knots = tuple(np.unique(np.quantile(column, _BENDS).round(3)) for column in scaled.T)
+    flat = Curve(low, high, knots, np.zeros(0), np.zeros(0))
+    columns, _ = flat.columns(evidence)
+    weights = _logistic(columns, true.astype(float)).round(_DIGITS)
+    usual = Curve(low, high, knots, weights, np.zeros(0)).adds(evidence[true]).mean(axis=0)
+    return {
+        "low": low.round(_DIGITS).tolist(),
+        "high": high.round(_DIGITS).tolist(),
+        "knots": [part.tolist() for part in knots],
+        "weights": weights.tolist(),
+        "usual": usual.round(_DIGITS).tolist(),
+    }
+
+
+def _logistic(columns: np.ndarray, true: np.ndarray) -> np.ndarray:
+    """Return the weights of a logistic regression with a small ridge, by Newton's method."""
+    weights = np.zeros(columns.shape[1])
+    ridge = np.full(columns.shape[1], _RIDGE)
+    ridge[0] = 1e-6
+    for _ in range(60):
+        chance = 1.0 / (1.0 + np.exp(-np.clip(columns @ weights, -30.0, 30.0)))
+        slope = columns.T @ (true - chance) - ridge * weights
+        bend = (columns * (chance * (1.0 - chance))[:, None]).T @ columns + np.diag(ridge)
+        change = np.linalg.solve(bend, slope)
+        weights = weights + change * min(1.0, 5.0 / float(np.abs(change).max(initial=1e-12)))
+        if np.abs(change).max() < 1e-6:
+            break
+    return weights

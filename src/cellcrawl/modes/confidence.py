@@ -1,0 +1,128 @@
+"""The confidence of an answer: how often answers like it are right.
+
+Of each answer of the rule, a logistic regression on the evidence says how often it is right, and
+how often the track is "other" instead: fitted to a mixture of known tracks by
+``cellcrawl bench modes --calibrate`` and kept in ``confidence.json``. Each number enters as a
+line with bends, so that what counts can be read off the file.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+from dataclasses import dataclass
+from importlib import resources
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from cellcrawl.modes.evidence import WORDS, Evidence
+
+FILE: Final = "confidence.json"
+_CROSSED: Final = (  # numbers that count differently in short and in long tracks
+    "fit",
+    "memory_score",
+    "rhythm",
+    "heading_error",
+    "disorder",
+    "records_per_swing",
+    "turned",
+)
+_TELLING = 0.5  # of the log-odds: evidence that weighs less is not named
+
+
+class Trust(NamedTuple):
+    """How often answers of this kind are right, and what speaks against this one, in words."""
+
+    right: float
+    other: float
+    against: str
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A logistic regression on lines with bends.
+
+    Attributes
+    ----------
+    low, high : ndarray, shape (evidence,)
+        Range of each number where it was fitted; beyond, its end counts.
+    knots : tuple of ndarray
+        Where the line of each number bends.
+    weights : ndarray
+        Of the constant, then number by number of line and bends, then of the crossed ones.
+    usual : ndarray, shape (evidence,)
+        What each number adds to the log-odds of right answers on average.
+    """
+
+    low: np.ndarray
+    high: np.ndarray
+    knots: tuple[np.ndarray, ...]
+    weights: np.ndarray
+    usual: np.ndarray
+
+    def columns(self, evidence: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the regressors (track, column) of evidence (track, number), and whose they are."""
+        span = np.where(self.high > self.low, self.high - self.low, 1.0)
+        scaled = (np.clip(evidence, self.low, self.high) - self.low) / span
+        parts = [np.ones((evidence.shape[0], 1))]
+        owners = [-1]
+        for i, knots in enumerate(self.knots):
+            line = scaled[:, i : i + 1]
+            parts += [line, np.maximum(0.0, line - knots)]
+            owners += [i] * (1 + knots.size)
+        length = scaled[:, _NAMES.index("records")]
+        for name in _CROSSED:
+            parts.append((length * scaled[:, _NAMES.index(name)])[:, None])
+            owners.append(_NAMES.index(name))
+        return np.concatenate(parts, axis=1), np.array(owners)
+
+    def probability(self, evidence: np.ndarray) -> np.ndarray:
+        """Return the probability (track,) for evidence (track, number)."""
+        odds: np.ndarray = self.columns(evidence)[0] @ self.weights
+        return 1.0 / (1.0 + np.exp(-np.clip(odds, -30.0, 30.0)))
+
+    def adds(self, evidence: np.ndarray) -> np.ndarray:
+        """Return what each number adds to the log-odds, (track, number)."""
+        columns, owners = self.columns(evidence)
+        products = columns * self.weights
+        return np.stack(
+            [products[:, owners == i].sum(axis=1) for i in range(len(_NAMES))], axis=1
+        )
+
+
+_NAMES = list(Evidence._fields)
+
+
+def trust(mode: str, evidence: Evidence) -> Trust:
+    """Return how far to trust that a track has the mode the rule gives it."""
+    right, other = _stored()[mode]
+    row = np.array([evidence])
+    chance = float(right.probability(row)[0])
+    instead = chance if mode == "other" else float(other.probability(row)[0])
+    return Trust(chance, instead, _against(right, row))
+
+
+def _against(curve: Curve, row: np.ndarray) -> str:
+    """Name the evidence that lowers the odds most against what is usual."""
+    lost = curve.usual - curve.adds(row)[0]
+    named = [(float(lost[i]), WORDS[name]) for i, name in enumerate(_NAMES) if name in WORDS]
+    most, words = max(named)
+    return words if most > _TELLING else ""
+
+
+@functools.cache
+def _stored() -> dict[str, tuple[Curve, Curve]]:
+    text = resources.files("cellcrawl.modes").joinpath(FILE).read_text("utf-8")
+    kept = json.loads(text)["answers"]
+    return {mode: (_curve(pair["right"]), _curve(pair["other"])) for mode, pair in kept.items()}
+
+
+def _curve(kept: dict[str, Any]) -> Curve:
+    return Curve(
+        np.array(kept["low"]),
+        np.array(kept["high"]),
+        tuple(np.array(knots) for knots in kept["knots"]),
+        np.array(kept["weights"]),
+        np.array(kept["usual"]),
+    )
