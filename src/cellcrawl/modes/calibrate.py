@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,7 +17,7 @@ from cellcrawl.observables.track import as_track
 ANSWERS = ("gliding", "rotational", "zigzag", "other", "stationary")
 _BENDS = (0.1, 0.3, 0.5, 0.7, 0.9)  # quantiles
 _ENDS = (0.005, 0.995)
-_RIDGE = 1.0
+_RIDGE = 3.0
 _DIGITS = 5
 
 
@@ -53,20 +54,22 @@ def fit(known: Answers) -> dict[str, Any]:
 
 
 def _fitted(evidence: np.ndarray, true: np.ndarray) -> dict[str, Any]:
-    low, high = np.quantile(evidence, _ENDS, axis=0)
+    low, high = (ends.round(_DIGITS) for ends in np.quantile(evidence, _ENDS, axis=0))
     span = np.where(high > low, high - low, 1.0)
     scaled = (np.clip(evidence, low, high) - low) / span
-    knots = tuple(np.unique(np.quantile(column, _BENDS).round(3)) for column in scaled.T)
-    flat = Curve(low, high, knots, np.zeros(0), np.zeros(0))
-    columns, _ = flat.columns(evidence)
-    weights = _logistic(columns, true.astype(float)).round(_DIGITS)
-    usual = Curve(low, high, knots, weights, np.zeros(0)).adds(evidence[true]).mean(axis=0)
+    lines = [
+        (owner, float(knot))
+        for owner, column in enumerate(scaled.T)
+        for knot in sorted({0.0, *np.quantile(column, _BENDS).round(3).tolist()} - {1.0})
+    ]
+    owners = np.array([owner for owner, _ in lines])
+    knots = np.array([knot for _, knot in lines])
+    bare = Curve(low, high, owners, knots, np.zeros(0), np.zeros(0))
+    weights = _logistic(bare.columns(evidence), true.astype(float)).round(_DIGITS)
+    usual = replace(bare, weights=weights).adds(evidence[true]).mean(axis=0).round(_DIGITS)
     return {
-        "low": low.round(_DIGITS).tolist(),
-        "high": high.round(_DIGITS).tolist(),
-        "knots": [part.tolist() for part in knots],
-        "weights": weights.tolist(),
-        "usual": usual.round(_DIGITS).tolist(),
+        name: getattr(replace(bare, weights=weights, usual=usual), name).tolist()
+        for name in Curve.__dataclass_fields__
     }
 
 

@@ -25,9 +25,9 @@ SHORTEST_RUN = 50.0
 """Runs of the model shorter than this, in 1/k_off0, may not have come to their mode."""
 _LATER_STARTS = (0.0, 1 / 9, 2 / 9, 3 / 9)
 """Where the transient may end, as parts of what follows the onset."""
+_SHORT, _LONG = 24, 60  # records up to which none of these, and only the last, is tried
 _PREFER_EARLY = 0.3  # a start that leaves out the part p must fit better by this times p
 _FEW_TURNS = 3  # a track that has turned less often, and less than once round, may be any mode
-_SURE = 0.8  # below this confidence the reason is told
 
 
 def classify(dataset: xr.Dataset, *, use_size: bool = True) -> Classification:
@@ -126,8 +126,8 @@ def _with_confidence(named: Classification, evidence: Evidence) -> Classificatio
         why = found.against or named.doubt or "too little to tell"
         doubt = _joined(f"not surely {named.mode}: {why}", wild)
         return replace(named, mode="other", confidence=found.other, doubt=doubt)
-    weak = found.against if found.right < _SURE else ""
-    return replace(named, confidence=found.right, doubt=_joined(named.doubt, weak, wild))
+    doubt = _joined(named.doubt, found.against, wild)
+    return replace(named, confidence=found.right, doubt=doubt)
 
 
 def _with_size(named: Classification, cell_radius: float) -> Classification:
@@ -162,7 +162,7 @@ def name_by_rule(track: Track) -> tuple[Classification, Evidence]:
         return named, gather(smoothed, still, still, {"stationary": at_rest.fit, "": 0.0})
     first = onset(smoothed)
     left = smoothed.t.size - first
-    starts = _LATER_STARTS if left > 2 * FEWEST_RECORDS else _LATER_STARTS[:1]
+    starts = _LATER_STARTS if left >= _LONG else _LATER_STARTS[:: 3 if left > _SHORT else 4]
     best = _apply_rule(smoothed, first)
     best_score = _score(best, 0.0)
     for later in starts[1:]:

@@ -31,6 +31,10 @@ _CROSSED: Final = (  # numbers that count differently in short and in long track
 _TELLING = 0.5  # of the log-odds: evidence that weighs less is not named
 
 
+TOLD: Final = 0.8
+"""Below this confidence the reason is told."""
+
+
 class Trust(NamedTuple):
     """How often answers of this kind are right, and what speaks against this one, in words."""
 
@@ -47,51 +51,48 @@ class Curve:
     ----------
     low, high : ndarray, shape (evidence,)
         Range of each number where it was fitted; beyond, its end counts.
-    knots : tuple of ndarray
-        Where the line of each number bends.
-    weights : ndarray
-        Of the constant, then number by number of line and bends, then of the crossed ones.
+    owners : ndarray of int, shape (column,)
+        Which number a line belongs to.
+    knots : ndarray, shape (column,)
+        Where in that range, from 0 to 1, the line starts to rise.
+    weights : ndarray, shape (1 + column + crossed,)
+        Of the constant, of the lines, and of the numbers times that of the records.
     usual : ndarray, shape (evidence,)
         What each number adds to the log-odds of right answers on average.
     """
 
     low: np.ndarray
     high: np.ndarray
-    knots: tuple[np.ndarray, ...]
+    owners: np.ndarray
+    knots: np.ndarray
     weights: np.ndarray
     usual: np.ndarray
 
-    def columns(self, evidence: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the regressors (track, column) of evidence (track, number), and whose they are."""
+    def columns(self, evidence: np.ndarray) -> np.ndarray:
+        """Return the regressors (track, 1 + column + crossed) of evidence (track, number)."""
         span = np.where(self.high > self.low, self.high - self.low, 1.0)
-        scaled = (np.clip(evidence, self.low, self.high) - self.low) / span
-        parts = [np.ones((evidence.shape[0], 1))]
-        owners = [-1]
-        for i, knots in enumerate(self.knots):
-            line = scaled[:, i : i + 1]
-            parts += [line, np.maximum(0.0, line - knots)]
-            owners += [i] * (1 + knots.size)
-        length = scaled[:, _NAMES.index("records")]
-        for name in _CROSSED:
-            parts.append((length * scaled[:, _NAMES.index(name)])[:, None])
-            owners.append(_NAMES.index(name))
-        return np.concatenate(parts, axis=1), np.array(owners)
+        scaled = (np.minimum(np.maximum(evidence, self.low), self.high) - self.low) / span
+        lines = np.maximum(0.0, scaled[:, self.owners] - self.knots)
+        crossed = scaled[:, _CROSSED_AT] * scaled[:, _LENGTH_AT : _LENGTH_AT + 1]
+        return np.concatenate([np.ones((evidence.shape[0], 1)), lines, crossed], axis=1)
 
     def probability(self, evidence: np.ndarray) -> np.ndarray:
         """Return the probability (track,) for evidence (track, number)."""
-        odds: np.ndarray = self.columns(evidence)[0] @ self.weights
+        odds: np.ndarray = self.columns(evidence) @ self.weights
         return 1.0 / (1.0 + np.exp(-np.clip(odds, -30.0, 30.0)))
 
     def adds(self, evidence: np.ndarray) -> np.ndarray:
         """Return what each number adds to the log-odds, (track, number)."""
-        columns, owners = self.columns(evidence)
-        products = columns * self.weights
-        return np.stack(
-            [products[:, owners == i].sum(axis=1) for i in range(len(_NAMES))], axis=1
-        )
+        products = self.columns(evidence)[:, 1:] * self.weights[1:]
+        whose = np.concatenate([self.owners, _CROSSED_AT])
+        belongs = (whose[:, None] == np.arange(len(_NAMES))).astype(float)
+        added: np.ndarray = products @ belongs
+        return added
 
 
 _NAMES = list(Evidence._fields)
+_CROSSED_AT = np.array([_NAMES.index(name) for name in _CROSSED])
+_LENGTH_AT = _NAMES.index("records")
 
 
 def trust(mode: str, evidence: Evidence) -> Trust:
@@ -99,8 +100,10 @@ def trust(mode: str, evidence: Evidence) -> Trust:
     right, other = _stored()[mode]
     row = np.array([evidence])
     chance = float(right.probability(row)[0])
-    instead = chance if mode == "other" else float(other.probability(row)[0])
-    return Trust(chance, instead, _against(right, row))
+    instead = chance
+    if mode != "other" and chance < 0.5:
+        instead = float(other.probability(row)[0])
+    return Trust(chance, instead, _against(right, row) if chance < TOLD else "")
 
 
 def _against(curve: Curve, row: np.ndarray) -> str:
@@ -119,10 +122,4 @@ def _stored() -> dict[str, tuple[Curve, Curve]]:
 
 
 def _curve(kept: dict[str, Any]) -> Curve:
-    return Curve(
-        np.array(kept["low"]),
-        np.array(kept["high"]),
-        tuple(np.array(knots) for knots in kept["knots"]),
-        np.array(kept["weights"]),
-        np.array(kept["usual"]),
-    )
+    return Curve(*(np.array(kept[name]) for name in Curve.__dataclass_fields__))

@@ -27,7 +27,7 @@ def stationary(found: Measures) -> list[Condition]:
     on a path they are much nearer to each other than that.
     """
     return [
-        _above("its positions scatter without order", found.disorder, 1.0, 0.4),
+        _above("its positions scatter without order", found.disorder, 1.3, 0.35),
         _below("it came to rest", found.late_extent, 0.02, 0.01),
     ]
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cellcrawl.observables.noise import position_noise
+from cellcrawl.observables.noise import median, position_noise
 from cellcrawl.observables.track import Track
 
 _FEWEST = 8  # records a track keeps at least; below that nothing is left out
@@ -39,12 +39,15 @@ class SoundTrack:
         The track without its wild records only.
     wild : tuple of int
         Records left out because they lie far off the path, as a wrong link does.
+    noise : float
+        Error of a position along one axis, of what is left.
     """
 
     track: Track
     clock: np.ndarray
     clean: Track
     wild: tuple[int, ...]
+    noise: float
 
     @property
     def at_rest(self) -> float:
@@ -69,7 +72,11 @@ def sound(track: Track) -> SoundTrack:
         kept[wild] = False
         clean = _part(track, kept)
     left = _without_repeats(clean)
-    return SoundTrack(*_without_pauses(left), clean, tuple(wild.tolist()))
+    noise = position_noise(left)
+    moving, clock = _without_pauses(left, noise)
+    if moving is not left:
+        noise = position_noise(moving)
+    return SoundTrack(moving, clock, clean, tuple(wild.tolist()), noise)
 
 
 def wild_records(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -148,9 +155,9 @@ def _without_repeats(track: Track) -> Track:
     return _part(track, kept) if np.count_nonzero(kept) >= _FEWEST else track
 
 
-def _without_pauses(track: Track) -> tuple[Track, np.ndarray]:
+def _without_pauses(track: Track, noise: float) -> tuple[Track, np.ndarray]:
     """Average the records of each pause, and stop the clock meanwhile."""
-    pauses = _find_pauses(track)
+    pauses = _find_pauses(track, noise)
     size = track.t.size
     if not pauses or size - sum(last - first for first, last in pauses) < _FEWEST:
         return track, track.t
@@ -166,14 +173,13 @@ def _without_pauses(track: Track) -> tuple[Track, np.ndarray]:
     return _part(replace(track, t=t, x=x, y=y), kept), clock[kept]
 
 
-def _find_pauses(track: Track) -> list[tuple[int, int]]:
+def _find_pauses(track: Track, noise: float) -> list[tuple[int, int]]:
     """Return the first and the last record of each pause."""
     size = track.t.size
     if size < _FEWEST:
         return []
     places = np.stack([track.x, track.y])
-    step = float(np.median(np.diff(track.t)))
-    noise = position_noise(track)
+    step = median(np.diff(track.t))
     speeds = _speeds(track, places, 1)
     pace = _at_pace(speeds) * step
     if pace == 0.0:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellcrawl.observables.noise import RAYLEIGH, position_noise
+from cellcrawl.observables.noise import RAYLEIGH, median
 from cellcrawl.observables.records import SoundTrack, sound
 from cellcrawl.observables.track import Track
 
@@ -75,7 +75,7 @@ def smooth(track: Track) -> SmoothTrack:
     even = np.linspace(clock[0], clock[-1], clock.size)
     step = float(even[1] - even[0])
     places = np.stack([np.interp(even, clock, values) for values in (track.x, track.y)])
-    noise = position_noise(track)
+    noise = counted.noise
     gaussian = _Gaussian(places)
     width, smoothed = 0.0, places
     for _ in range(_ITERATIONS):
@@ -97,7 +97,7 @@ def smooth(track: Track) -> SmoothTrack:
         step,
         noise,
         width,
-        _heading_error(noise, step, width, float(np.median(speed))),
+        _heading_error(noise, step, width, median(speed)),
         counted,
     )
 
@@ -123,7 +123,7 @@ class _Gaussian:
 
 def _pace(places: np.ndarray, step: float) -> float:
     moved = np.diff(places, axis=1)
-    return float(np.median(np.hypot(moved[0], moved[1]))) / step
+    return median(np.hypot(moved[0], moved[1])) / step
 
 
 def _width_for(noise: float, step: float, pace: float, duration: float) -> float:
@@ -139,7 +139,7 @@ def _width_for(noise: float, step: float, pace: float, duration: float) -> float
 def _removed(places: np.ndarray, smoothed: np.ndarray) -> float:
     """Return by how much smoothing moved the positions, as a deviation along an axis."""
     moved = places - smoothed
-    return float(np.median(np.hypot(moved[0], moved[1]))) / RAYLEIGH
+    return median(np.hypot(moved[0], moved[1])) / RAYLEIGH
 
 
 def _heading_error(noise: float, step: float, width: float, pace: float) -> float:
