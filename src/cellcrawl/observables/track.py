@@ -59,7 +59,14 @@ def _track_of(run: xr.Dataset, at_least: int) -> Track:
     t, x, y = (
         real_array(name, run[name].values, (None,)) for name in ("time", "centroid_x", "centroid_y")
     )
-    return Track(t, x, y, length_units="R_0", time_units="1/k_off0")
+    return Track(t, x, y, *units_of(run))
+
+
+def units_of(run: xr.Dataset) -> tuple[str, str]:
+    """Return the units of length and time: the model's, or those of outlines."""
+    if run.attrs.get("kind") == "outlines":
+        return str(run.attrs.get("length_units", "")), str(run.attrs.get("time_units", ""))
+    return "R_0", "1/k_off0"
 
 
 def _positions(name: str, values: Any, size: int) -> np.ndarray:
