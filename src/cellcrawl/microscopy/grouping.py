@@ -107,7 +107,7 @@ def tracks_of_records(
         across,
         up,
         starts,
-        [ids[c] for c in there],
+        [ids[int(c)] for c in there],
         _noted(source, notes),
         tuple(out),
         parents,
