@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from cellcrawl.errors import CellcrawlError as CellcrawlError
     from cellcrawl.errors import InputError as InputError
     from cellcrawl.errors import StorageError as StorageError
+    from cellcrawl.microscopy import read_outlines as read_outlines
     from cellcrawl.microscopy import read_tracks as read_tracks
     from cellcrawl.modes import classify as classify
     from cellcrawl.modes import classify_track as classify_track
@@ -68,6 +69,7 @@ _HOMES = {
     "movie": "movies",
     "open_run": "simulation",
     "open_sweep": "sweeps",
+    "read_outlines": "microscopy",
     "read_tracks": "microscopy",
     "resume": "simulation",
     "simulate": "simulation",

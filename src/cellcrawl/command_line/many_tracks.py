@@ -86,9 +86,3 @@ def _classify_chunk(tracks: Tracks, cell_radius: float | None) -> list[Named]:
         except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
             found.append(Named(track.id, None, f"it cannot be measured: {error}"))
     return found
-
-
-def default_workers() -> int:
-    with contextlib.suppress(AttributeError):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
