@@ -16,7 +16,7 @@ from cellcrawl.starts.base import CellState
 from cellcrawl.starts.holding import held_polygon
 from cellcrawl.validation import real_array, real_number
 
-_NODES = 256  # at which an outline is tried when it is given
+_NODES = 512  # at which an outline is tried when it is given
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,14 +80,14 @@ class FromOutline:
             object.__setattr__(self, "tension", real_number("tension", self.tension, -1e12, 1e12))
         smoothing = real_number("smoothing", self.smoothing, 0.001, 0.1)
         object.__setattr__(self, "smoothing", smoothing)
-        changes = held_polygon(xy, _NODES, smoothing)[2]
+        changes = held_polygon(xy, _NODES, smoothing)[1]
         object.__setattr__(self, "changes", changes)
         for change in changes:
             warnings.warn(f"the outline was changed: {change}", OutlineChangedWarning, stacklevel=3)
 
     def state(self, parameters: Parameters, nodes: int) -> CellState:
         """Return the first state on ``nodes`` nodes."""
-        curve = held_polygon(self.xy, nodes, self.smoothing)[1]
+        curve = held_polygon(self.xy, nodes, self.smoothing)[0]
         bound = np.full(nodes, parameters.n_bar)
         if self.bound_fraction is not None:
             bound = self._bound_along(curve)
