@@ -4,7 +4,17 @@ Needs NumPy, xarray and PyArrow; neither a solver nor a compiler.
 """
 
 from cellcrawl.microscopy.outlines import Outline, Outlines
+from cellcrawl.microscopy.read import read_outlines, read_tracks
 from cellcrawl.microscopy.source import LeftOut, Source
 from cellcrawl.microscopy.track import Track, Tracks
 
-__all__ = ["LeftOut", "Outline", "Outlines", "Source", "Track", "Tracks"]
+__all__ = [
+    "LeftOut",
+    "Outline",
+    "Outlines",
+    "Source",
+    "Track",
+    "Tracks",
+    "read_outlines",
+    "read_tracks",
+]

@@ -30,7 +30,8 @@ def tracks_of_records(
     Parameters
     ----------
     codes : ndarray of int, shape (records,)
-        Which of ``ids`` each record belongs to; below 0 for a record of no track.
+        Which of ``ids`` each record belongs to; -1 for a record of no track, -2 for one of a track
+        that was left out before.
     ids : sequence of str
         Names of the tracks.
     t, x, y : ndarray, shape (records,)
@@ -48,16 +49,16 @@ def tracks_of_records(
     """
     notes, out = list(source.notes), list(left_out)
     blank = ~(np.isfinite(t) & np.isfinite(x) & np.isfinite(y))
-    stray = codes < 0
+    stray = codes == -1
     if stray.any():
         out.append(
             LeftOut(f"{_rows(int(stray.sum()))}", "they belong to no track", int(stray.sum()))
         )
-    empty = blank & ~stray
+    empty = blank & (codes >= 0)
     if empty.any():
         cells = np.unique(codes[empty]).size
         notes.append(f"{_rows(int(empty.sum()))} of {_many(cells, 'track')} blank: skipped")
-    keep = np.flatnonzero(~blank & ~stray)
+    keep = np.flatnonzero(~blank & (codes >= 0))
     order = keep[np.lexsort((t[keep], codes[keep]))]
     if np.any(np.diff(order) < 0) and _disordered(codes[keep], t[keep]):
         notes.append("the rows were not in the order of time: sorted")
@@ -107,7 +108,7 @@ def tracks_of_records(
         across,
         up,
         starts,
-        [ids[c] for c in there],
+        [ids[int(c)] for c in there],
         _noted(source, notes),
         tuple(out),
         parents,

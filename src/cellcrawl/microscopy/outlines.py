@@ -12,9 +12,10 @@ import numpy as np
 import xarray as xr
 
 from cellcrawl.errors import InputError
+from cellcrawl.microscopy.grouping import tracks_of_records
 from cellcrawl.microscopy.polygons import area_of, centroid_of, equally_spaced
 from cellcrawl.microscopy.source import UNTOLD, LeftOut, Source, listed
-from cellcrawl.microscopy.track import Track, Tracks
+from cellcrawl.microscopy.track import Tracks
 
 NODES = 128
 
@@ -124,14 +125,18 @@ class Outlines(Sequence[Outline]):
 
     @cached_property
     def tracks(self) -> Tracks:
-        """The paths of the centroids, as `read_tracks` returns them."""
-        paths = []
-        for track in self.track_ids:
-            own = self.of_track(track)
-            t = np.array([outline.t for outline in own])
-            x, y = np.array([outline.centroid for outline in own]).T
-            paths.append(Track(t, x, y, id=track))
-        return Tracks.of(paths, self.source)
+        """The paths of the centroids, as `read_tracks` returns them.
+
+        Raises
+        ------
+        InputError
+            If no cell has outlines in two frames or more.
+        """
+        places = {track: place for place, track in enumerate(self.track_ids)}
+        codes = np.array([places[outline.track] for outline in self], np.int64)
+        t = np.array([outline.t for outline in self], float)
+        x, y = np.array([outline.centroid for outline in self]).reshape(-1, 2).T
+        return tracks_of_records(codes, self.track_ids, t, x, y, self.source, self.left_out)
 
     @cached_property
     def dataset(self) -> xr.Dataset:
@@ -197,7 +202,7 @@ class Outlines(Sequence[Outline]):
     def lines(self) -> list[str]:
         """Return what was read and what was left out and why, in a few lines."""
         frames = len({outline.frame for outline in self})
-        count = f"{len(self)} outlines of {len(self.track_ids)} cells in {frames} frames"
+        count = f"{len(self)} outlines, {len(self.track_ids)} cells, {frames} frames"
         changed = [outline for outline in self if outline.changes]
         told = [f"{changed[0]!r}: {', '.join(changed[0].changes)}"] if changed else []
         if len(changed) > 1:

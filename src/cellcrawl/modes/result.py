@@ -114,14 +114,18 @@ class Classification:
         row = {"mode": self.mode, "confidence": self.confidence, **asdict(self.measures)}
         return {**row, "doubt": self.doubt}
 
-    def summary(self) -> str:
-        """Return what the mode was seen by, in a few words."""
-        told = self._told()
+    def summary(self, *, y_down: bool = False) -> str:
+        """Return what the mode was seen by, in a few words.
+
+        Left and right are those of the screen: with ``y_down``, as in an image, a positive net
+        change of heading is a turn to the right.
+        """
+        told = self._told(y_down)
         return "; but ".join(part for part in (told, self.doubt) if part)
 
-    def _told(self) -> str:
+    def _told(self, y_down: bool) -> str:
         seen = self.measures
-        side = "left" if seen.turned > 0.0 else "right"
+        side = "left" if (seen.turned > 0.0) != y_down else "right"
         match self.mode:
             case "gliding":
                 return f"turned {abs(math.degrees(seen.turned)):.0f} degrees in all"
