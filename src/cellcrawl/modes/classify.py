@@ -122,12 +122,11 @@ def _with_confidence(named: Classification, evidence: Evidence) -> Classificatio
     """Say how often such an answer is right, and take it back if "other" is right more often."""
     found = trust(named.mode, evidence)
     wild = "a record far off its path was left out" if evidence.wild else ""
-    if named.mode != "other" and found.right < 0.5 and found.other > found.right:
+    doubt = _joined(named.doubt, found.against, wild)
+    if found.mode != named.mode:
         why = found.against or named.doubt or "too little to tell"
         doubt = _joined(f"not surely {named.mode}: {why}", wild)
-        return replace(named, mode="other", confidence=found.other, doubt=doubt)
-    doubt = _joined(named.doubt, found.against, wild)
-    return replace(named, confidence=found.right, doubt=doubt)
+    return replace(named, mode=found.mode, confidence=found.confidence, doubt=doubt)
 
 
 def _with_size(named: Classification, cell_radius: float) -> Classification:

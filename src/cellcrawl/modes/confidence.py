@@ -36,10 +36,10 @@ TOLD: Final = 0.8
 
 
 class Trust(NamedTuple):
-    """How often answers of this kind are right, and what speaks against this one, in words."""
+    """The answer that is right most often, how often, and what speaks against it, in words."""
 
-    right: float
-    other: float
+    mode: str
+    confidence: float
     against: str
 
 
@@ -96,14 +96,59 @@ _LENGTH_AT = _NAMES.index("records")
 
 
 def trust(mode: str, evidence: Evidence) -> Trust:
-    """Return how far to trust that a track has the mode the rule gives it."""
-    right, other = _stored()[mode]
+    """Return what to answer when the rule gives a mode, and how far to trust it."""
+    stored = _stored()
     row = np.array([evidence])
-    chance = float(right.probability(row)[0])
-    instead = chance
-    if mode != "other" and chance < 0.5:
-        instead = float(other.probability(row)[0])
-    return Trust(chance, instead, _against(right, row) if chance < TOLD else "")
+    chosen, raw = stored.decide(np.array([mode]), row)
+    confidence = float(np.interp(raw[0], stored.raw, stored.settled))
+    against = _against(stored.curves[mode][0], row) if confidence < TOLD else ""
+    return Trust(str(chosen[0]), confidence, against)
+
+
+@dataclass(frozen=True, eq=False)
+class Stored:
+    """What `confidence.json` holds.
+
+    Attributes
+    ----------
+    curves : dict
+        For each answer of the rule, how often it is right and how often "other" is.
+    raw, settled : ndarray
+        How often answers were right that the curves gave these probabilities, on tracks that they
+        were not fitted to.
+    """
+
+    curves: dict[str, tuple[Curve, Curve]]
+    raw: np.ndarray
+    settled: np.ndarray
+
+    def decide(self, modes: np.ndarray, evidence: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return answers and their probabilities for answers of the rule and evidence.
+
+        An answer that is wrong more often than right gives way to "other" if that is likelier.
+        """
+        chosen = modes.astype(object)
+        raw = np.zeros(modes.size)
+        for mode in set(modes.tolist()):
+            asked = np.flatnonzero(modes == mode)
+            right, other = self.curves[mode]
+            raw[asked] = right.probability(evidence[asked])
+            if mode != "other":
+                weak = asked[raw[asked] < 0.5]
+                instead = other.probability(evidence[weak])
+                taken = instead > raw[weak]
+                chosen[weak[taken]] = "other"
+                raw[weak[taken]] = instead[taken]
+        return chosen, raw
+
+
+def stored_from(kept: dict[str, Any]) -> Stored:
+    """Return what a table as in `confidence.json` holds."""
+    curves = {
+        mode: (_curve(pair["right"]), _curve(pair["other"]))
+        for mode, pair in kept["answers"].items()
+    }
+    return Stored(curves, np.array(kept["raw"]), np.array(kept["settled"]))
 
 
 def _against(curve: Curve, row: np.ndarray) -> str:
@@ -115,10 +160,9 @@ def _against(curve: Curve, row: np.ndarray) -> str:
 
 
 @functools.cache
-def _stored() -> dict[str, tuple[Curve, Curve]]:
+def _stored() -> Stored:
     text = resources.files("cellcrawl.modes").joinpath(FILE).read_text("utf-8")
-    kept = json.loads(text)["answers"]
-    return {mode: (_curve(pair["right"]), _curve(pair["other"])) for mode, pair in kept.items()}
+    return stored_from(json.loads(text))
 
 
 def _curve(kept: dict[str, Any]) -> Curve:
