@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -96,8 +97,9 @@ def persistent_walk(
 
     Parameters
     ----------
-    run : Dataset, Track or array_like, shape (record,)
-        A run, or the times of a track, even or not; 20 records or more.
+    run : Dataset, Track, Tracks or array_like, shape (record,)
+        A run, the times of a track, even or not, or several tracks of one walk, which are fitted
+        together; 20 records or more of each.
     x, y : array_like, shape (record,), optional
         Positions at these times; left out with a run.
     exposure : float
@@ -128,16 +130,21 @@ def persistent_walk(
     classifier first. The persistence time of a track shorter than about ten of them comes out with
     a wide interval, and too short.
     """
-    track = as_track(run, x, y, at_least=_FEWEST)
-    track = sound(track).clean
-    steps = np.diff(track.t)
+    several = run if isinstance(run, Sequence) and isinstance(next(iter(run), None), Track) else ()
+    given = [as_track(track, at_least=_FEWEST) for track in several]
+    tracks = [sound(track).clean for track in given or [as_track(run, x, y, at_least=_FEWEST)]]
+    steps = np.concatenate([np.diff(track.t) for track in tracks])
     shortest = float(steps.min())
     real_number("exposure", exposure, 0.0, shortest * (1.0 + 1e-9))
-    unit, interval = _scales(track)
-    places = np.stack([track.x - track.x[0], track.y - track.y[0]]) / unit
+    unit, interval = _scales(tracks)
+    places = np.concatenate(
+        [np.stack([track.x - track.x[0], track.y - track.y[0]]) / unit for track in tracks], axis=1
+    )
+    sizes = np.array([track.t.size for track in tracks])
     gaps, which = np.unique(np.round(steps / interval, 9), return_inverse=True)
-    likelihood = _Likelihood(places, gaps, which, exposure / interval)
-    noise = max(min(position_noise(track) / unit, 0.5), 1e-3)
+    likelihood = _Likelihood(places, sizes, gaps, which, exposure / interval)
+    noise = float(np.median([position_noise(track) for track in tracks])) / unit
+    noise = max(min(noise, 0.5), 1e-3)
     starts = [np.log([p, 1.0, e]) for p in _MEMORIES for e in (noise, 0.1 * noise)]
     best = likelihood.maximise(min(starts, key=likelihood))
     time, speed, error = _estimates(likelihood, best)
@@ -146,14 +153,15 @@ def persistent_walk(
         _scaled(speed, math.sqrt(2.0) * unit / interval),
         _scaled(error, unit),
         float(exposure),
-        int(track.t.size),
+        int(sizes.sum()),
     )
 
 
-def _scales(track: Track) -> tuple[float, float]:
+def _scales(tracks: list[Track]) -> tuple[float, float]:
     """Return the root mean square step and the median interval."""
-    interval = float(np.median(np.diff(track.t)))
-    unit = math.sqrt(float(np.mean(np.diff(track.x) ** 2 + np.diff(track.y) ** 2)))
+    interval = float(np.median(np.concatenate([np.diff(track.t) for track in tracks])))
+    squares = [np.diff(track.x) ** 2 + np.diff(track.y) ** 2 for track in tracks]
+    unit = math.sqrt(float(np.mean(np.concatenate(squares))))
     if unit == 0.0:
         raise InputError("this track never moves: there is no walk to fit")
     return unit, interval
@@ -167,10 +175,16 @@ class _Likelihood:
     """Minus the logarithm of the likelihood of a walk, against log P, log s and log error."""
 
     def __init__(
-        self, places: np.ndarray, gaps: np.ndarray, which: np.ndarray, exposure: float
+        self,
+        places: np.ndarray,
+        sizes: np.ndarray,
+        gaps: np.ndarray,
+        which: np.ndarray,
+        exposure: float,
     ) -> None:
         self._places = np.ascontiguousarray(places)
-        self._gaps, self._which, self._exposure = gaps, which.astype(np.int64), exposure
+        self._sizes, self._gaps, self._exposure = sizes, gaps, exposure
+        self._which = which.astype(np.int64)
 
     def __call__(self, parameters: np.ndarray) -> float:
         if np.abs(parameters).max() > 25.0:
@@ -178,7 +192,14 @@ class _Likelihood:
         time, speed, error = np.exp(parameters)
         forward, spread = _steps(self._gaps, self._exposure, time, speed)
         value = _filter(
-            self._places, self._which, forward, spread, self._exposure, speed**2, error**2
+            self._places,
+            self._sizes,
+            self._which,
+            forward,
+            spread,
+            self._exposure,
+            speed**2,
+            error**2,
         )
         return float(value) if math.isfinite(value) else _BIG
 
@@ -306,6 +327,7 @@ def _part(
 @kernel
 def _filter(
     places: np.ndarray,
+    sizes: np.ndarray,
     which: np.ndarray,
     forward: np.ndarray,
     spread: np.ndarray,
@@ -313,54 +335,63 @@ def _filter(
     velocity_variance: float,
     error_variance: float,
 ) -> float:
-    """Return minus the log-likelihood of positions (2, record), but for a constant.
+    """Return minus the log-likelihood of positions (2, records of all tracks), but for a constant.
 
-    The first record places the walk: its state is that of a cell seen there, of any velocity.
+    The first record of a track places the walk: its state is that of a cell seen there, of any
+    velocity.
     """
     mean = np.zeros((3, 2))
     covariance = np.zeros((3, 3))
-    for axis in range(2):
-        mean[0, axis] = places[axis, 0]
-    covariance[0, 0] = error_variance + velocity_variance * exposure * exposure
-    covariance[1, 1] = velocity_variance
     total = 0.0
     after = np.zeros((3, 2))
     product = np.zeros((3, 3))
     row = 2 if exposure > 0.0 else 0
     scale = 1.0 / exposure if exposure > 0.0 else 1.0
-    for record in range(1, places.shape[1]):
-        step = forward[which[record - 1]]
-        noise = spread[which[record - 1]]
-        for k in range(3):  # the integral over the exposure begins anew
-            covariance[2, k] = 0.0
-            covariance[k, 2] = 0.0
-        mean[2, 0] = 0.0
-        mean[2, 1] = 0.0
-        for i in range(3):
-            for axis in range(2):
-                after[i, axis] = 0.0
-                for k in range(3):
-                    after[i, axis] += step[i, k] * mean[k, axis]
-            for j in range(3):
-                product[i, j] = 0.0
-                for k in range(3):
-                    product[i, j] += step[i, k] * covariance[k, j]
-        for i in range(3):
-            for j in range(3):
-                value = noise[i, j]
-                for k in range(3):
-                    value += product[i, k] * step[j, k]
-                covariance[i, j] = value
-        variance = covariance[row, row] * scale * scale + error_variance
-        total += np.log(variance)
-        for axis in range(2):
-            missed = places[axis, record] - after[row, axis] * scale
-            total += 0.5 * missed * missed / variance
+    record = 0
+    gap = 0
+    for size in sizes:
+        mean[:] = 0.0
+        covariance[:] = 0.0
+        mean[0, 0] = places[0, record]
+        mean[0, 1] = places[1, record]
+        covariance[0, 0] = error_variance + velocity_variance * exposure * exposure
+        covariance[1, 1] = velocity_variance
+        record += 1
+        for _ in range(size - 1):
+            step = forward[which[gap]]
+            noise = spread[which[gap]]
+            for k in range(3):  # the integral over the exposure begins anew
+                covariance[2, k] = 0.0
+                covariance[k, 2] = 0.0
+            mean[2, 0] = 0.0
+            mean[2, 1] = 0.0
             for i in range(3):
-                mean[i, axis] = after[i, axis] + covariance[i, row] * scale * missed / variance
-        for i in range(3):
-            product[i, 0] = covariance[i, row] * scale
-        for i in range(3):
-            for j in range(3):
-                covariance[i, j] -= product[i, 0] * product[j, 0] / variance
+                for axis in range(2):
+                    after[i, axis] = 0.0
+                    for k in range(3):
+                        after[i, axis] += step[i, k] * mean[k, axis]
+                for j in range(3):
+                    product[i, j] = 0.0
+                    for k in range(3):
+                        product[i, j] += step[i, k] * covariance[k, j]
+            for i in range(3):
+                for j in range(3):
+                    value = noise[i, j]
+                    for k in range(3):
+                        value += product[i, k] * step[j, k]
+                    covariance[i, j] = value
+            variance = covariance[row, row] * scale * scale + error_variance
+            total += np.log(variance)
+            for axis in range(2):
+                missed = places[axis, record] - after[row, axis] * scale
+                total += 0.5 * missed * missed / variance
+                for i in range(3):
+                    mean[i, axis] = after[i, axis] + covariance[i, row] * scale * missed / variance
+            for i in range(3):
+                product[i, 0] = covariance[i, row] * scale
+            for i in range(3):
+                for j in range(3):
+                    covariance[i, j] -= product[i, 0] * product[j, 0] / variance
+            record += 1
+            gap += 1
     return total
