@@ -70,7 +70,11 @@ def _axis(
     missing = properties[found].get("missing")
     if missing is not None:
         values = np.where(np.asarray(missing, bool), np.nan, values)
-    unit = getattr(named.get(found), "unit", None) or ""
+    axis = named.get(found)
+    unit = getattr(axis, "unit", None) or ""
+    if axis is not None and getattr(axis, "scale", None):
+        values = axis.scale * values + (axis.offset or 0.0)
+        unit = axis.scaled_unit or unit
     return values, (time_unit if kind == "time" else length_unit)(unit)
 
 

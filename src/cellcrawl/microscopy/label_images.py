@@ -100,8 +100,9 @@ def linked_or_apart(outlines: Sequence[Outline]) -> tuple[list[Outline], list[st
         apart = [replace(one, track=f"{one.frame}/{one.track}") for one in ordered]
         note = "the numbers of cells start anew in every frame: no cells are linked over time"
         return apart, [note]
-    note = "a number is one cell in all frames"
-    return ordered, [note] if len({one.frame for one in ordered}) > 1 else []
+    over_time = len({one.frame for one in ordered}) > 1
+    several = len({one.track for one in ordered}) > 1
+    return ordered, ["a number is one cell in all frames"] if over_time and several else []
 
 
 def pieces(image: np.ndarray) -> Iterator[Piece]:

@@ -160,11 +160,12 @@ def _by_content(form: Form) -> tuple[Columns, tuple[str, bool, str]]:
         ]
         if not _is_whole(values[identity]) or not rising or not _in_blocks(values[identity]):
             continue
-        # Frame and time may both be there: time is the later column, and both stand before x.
-        rest = [p for p in range(form.width) if p not in (identity, *rising)]
-        if rest and max(rising) < min(p for p in rest if p > identity or p == rest[-1]):
-            rest = [p for p in rest if p > max(rising)]
-        if len(rest) in (2, 3) and max(rising) < rest[0]:
+        # Frame and time may both be there: each tells the other. A position may rise too.
+        first = rising[0]
+        times = [p for p in rising if _same_clock(values[first], values[p])]
+        rest = [p for p in range(form.width) if p not in (identity, *times)]
+        if len(rest) in (2, 3) and max(identity, *times) < rest[0]:
+            rising = times
             places = {"id": identity, "t": rising[-1], "x": rest[0], "y": rest[1]}
             if len(rest) == 3:
                 places["z"] = rest[2]
@@ -180,6 +181,13 @@ def _is_whole(values: np.ndarray) -> bool:
 def _in_blocks(values: np.ndarray) -> bool:
     """Whether equal values stand together: as many blocks as values."""
     return bool(1 + np.count_nonzero(np.diff(values)) == np.unique(values).size < values.size)
+
+
+def _same_clock(first: np.ndarray, other: np.ndarray) -> bool:
+    """Whether one column is the other in other units, over all records."""
+    low, high = int(np.argmin(first)), int(np.argmax(first))
+    pace = (other[high] - other[low]) / (first[high] - first[low])
+    return bool(np.allclose(other, other[low] + pace * (first - first[low]), rtol=1e-9, atol=1e-9))
 
 
 def _rises_within(identity: np.ndarray, values: np.ndarray) -> bool:

@@ -8,8 +8,6 @@ import numpy as np
 
 from cellcrawl.curve import Curve, SelfCrossing, from_polygon, polygon_area, simple_polygon
 from cellcrawl.errors import InputError
-from cellcrawl.microscopy.label_images import pieces
-from cellcrawl.microscopy.raster import opened, rasterised
 
 _PIXELS_ACROSS = 160.0  # pixels along the side of a square of the cell's area
 _LARGEST_GRID = 1500  # pixels along the longer side of the grid
@@ -43,8 +41,8 @@ def held_polygon(xy: np.ndarray, nodes: int, smoothing: float) -> tuple[Curve, t
     An outline that is simple, and whose smooth curve is, stays as it is unless it has fibres: bends
     sharper than a sixteenth of the cell's radius that go when it is opened, and the outline gets a
     twelfth shorter. Such an outline is opened by disks of growing radius until its bends are wider:
-    what no disk fits into is taken off. One that would lose more than a fifth of its area, such as a
-    figure of eight, is refused.
+    what no disk fits into is taken off. One that would lose more than a fifth of its area, such as
+    a figure of eight, is refused.
     """
     complaint: InputError | None = None
     whole: Curve | None = None
@@ -96,6 +94,10 @@ def _has_fibres(xy: np.ndarray, whole: Curve, nodes: int, smoothing: float) -> b
 
 def _opened_polygon(xy: np.ndarray, radius: float) -> np.ndarray | None:
     """Return the largest piece after an opening; None if it is another shape then."""
+    # Only outlines that need it pay for the import of readers and what they lean on.
+    from cellcrawl.microscopy.label_images import pieces
+    from cellcrawl.microscopy.raster import opened, rasterised
+
     low, size = xy.min(axis=0), np.ptp(xy, axis=0)
     pixel = max(math.sqrt(_area(xy, low, size)) / _PIXELS_ACROSS, size.max() / _LARGEST_GRID)
     shape = (int(size[1] / pixel) + 5, int(size[0] / pixel) + 5)
@@ -111,6 +113,8 @@ def _opened_polygon(xy: np.ndarray, radius: float) -> np.ndarray | None:
 
 def _area(xy: np.ndarray, low: np.ndarray, size: np.ndarray) -> float:
     """Area enclosed by the even-odd rule, roughly; that of the box over 100 at the least."""
+    from cellcrawl.microscopy.raster import rasterised
+
     pixel = float(size.max()) / 300.0
     shape = (int(size[1] / pixel) + 3, int(size[0] / pixel) + 3)
     pixels = int(rasterised((xy - low) / pixel + 1.37, shape).sum())
