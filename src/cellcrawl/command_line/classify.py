@@ -48,6 +48,7 @@ class _Row(NamedTuple):
     metavar="LENGTH",
     help="Radius of the cell in the units of the tracks; runs know theirs.",
 )
+@click.option("--remove-drift", is_flag=True, help="Take off the motion that all tracks share.")
 @click.option(
     "--output",
     type=click.Path(path_type=Path, dir_okay=False),
@@ -55,7 +56,11 @@ class _Row(NamedTuple):
     help="Also write the table with all measures, as .csv.",
 )
 def classify(
-    files: tuple[Path, ...], cell_radius: float | None, output: Path | None, **reading: Any
+    files: tuple[Path, ...],
+    cell_radius: float | None,
+    remove_drift: bool,
+    output: Path | None,
+    **reading: Any,
 ) -> None:
     """Name the motility mode of each FILE: gliding, rotational, zigzag, other, stationary or torn.
 
@@ -78,7 +83,7 @@ def classify(
     failures: list[str] = []
     for file in files:
         try:
-            rows += _rows(file, cell_radius, reading)
+            rows += _rows(file, cell_radius, remove_drift, reading)
         except InputError as error:
             if len(files) == 1:
                 raise
@@ -102,7 +107,9 @@ def classify(
         say(f"table    {output}")
 
 
-def _rows(file: Path, cell_radius: float | None, reading: dict[str, Any]) -> list[_Row]:
+def _rows(
+    file: Path, cell_radius: float | None, remove_drift: bool, reading: dict[str, Any]
+) -> list[_Row]:
     import cellcrawl as cc
 
     if file.suffix in _RUNS and not _is_a_graph(file):
@@ -111,6 +118,13 @@ def _rows(file: Path, cell_radius: float | None, reading: dict[str, Any]) -> lis
     tracks = read_tracks_of(file, **reading)
     for line in tracks.lines():
         say(line)
+    if len(tracks):
+        drift = cc.observables.shared_drift(tracks)
+        if drift.noticed:
+            say(f"{drift}" + ("" if remove_drift else "; --remove-drift takes it off"))
+        if remove_drift:
+            tracks = cc.observables.without_drift(tracks, drift)
+            say(tracks.source.notes[-1])
     with _progress(len(tracks)) as told:
         rows = [
             _Row(str(file), named.track, named.result, named.reason, tracks.source.y_down)

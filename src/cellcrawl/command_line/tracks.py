@@ -90,7 +90,7 @@ def draw_sheet(
         say(line)
     drift = cc.observables.shared_drift(given)
     if drift.noticed:
-        say(str(drift))
+        say(f"{drift}" + ("" if remove_drift else "; --remove-drift takes it off"))
     if remove_drift:
         given = cc.observables.without_drift(given, drift)
         say(given.source.notes[-1])
