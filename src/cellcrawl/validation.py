@@ -66,9 +66,8 @@ def real_array(name: str, value: Any, shape: tuple[int | None, ...] | None) -> n
         or any(want not in (None, have) for have, want in zip(array.shape, shape, strict=True))
     ):
         raise InputError(f"{name} has shape {array.shape}: it must have {wanted}")
-    masked = np.argwhere(np.ma.getmaskarray(value)) if isinstance(value, np.ma.MaskedArray) else ()
-    if len(masked):
-        where = tuple(int(i) for i in masked[0])
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+        where = tuple(int(i) for i in np.argwhere(np.ma.getmaskarray(value))[0])
         raise InputError(f"{name} is masked at index {where}: leave masked values out")
     bad = np.argwhere(~np.isfinite(array))
     if len(bad):

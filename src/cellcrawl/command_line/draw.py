@@ -55,7 +55,6 @@ def plot(file: Path, kind: str, origin: str, output: Path | None, dpi: int) -> N
       cellcrawl plot run.nc --kind kymographs --origin material
     """
     import cellcrawl as cc
-
     from cellcrawl.command_line.tracks import RUNS, draw_sheet
 
     one_of("--kind", kind, _KINDS)

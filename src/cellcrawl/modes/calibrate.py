@@ -12,6 +12,7 @@ from cellcrawl.modes.classify import name_by_rule
 from cellcrawl.modes.confidence import Curve, stored_from
 from cellcrawl.modes.evidence import Evidence
 from cellcrawl.modes.synthetic import SyntheticTrack
+from cellcrawl.observables.smoothing import smooth
 from cellcrawl.observables.track import as_track
 
 ANSWERS = ("gliding", "rotational", "zigzag", "other", "stationary")
@@ -34,7 +35,7 @@ def answers(tracks: Iterable[SyntheticTrack]) -> Answers:
     """Name tracks by the rule and gather the evidence: modes (track,), evidence (track, number)."""
     given, right, evidence = [], [], []
     for track in tracks:
-        named, seen = name_by_rule(as_track(track.t, track.x, track.y))
+        named, seen = name_by_rule(smooth(as_track(track.t, track.x, track.y)))
         given.append(named.mode)
         right.append(track.mode)
         evidence.append(seen)

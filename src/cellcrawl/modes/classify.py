@@ -113,19 +113,21 @@ def is_long_enough(dataset: xr.Dataset) -> bool:
 
 
 def _classify(track: Track, cell_radius: float | None) -> Classification:
-    named, evidence = name_by_rule(track)
-    trusted = _with_confidence(named, evidence)
-    return trusted if cell_radius is None else _with_size(trusted, cell_radius)
+    smoothed = smooth(track)
+    named, evidence = name_by_rule(smoothed)
+    found = _with_confidence(named, evidence)
+    if cell_radius is not None:
+        found = _with_size(found, cell_radius)
+    return replace(found, doubt=_joined(found.doubt, _told_of(smoothed.sound.wild, track)))
 
 
 def _with_confidence(named: Classification, evidence: Evidence) -> Classification:
     """Say how often such an answer is right, and take it back if "other" is right more often."""
     found = trust(named.mode, evidence)
-    wild = "a record far off its path was left out" if evidence.wild else ""
-    doubt = _joined(named.doubt, found.against, wild)
+    doubt = _joined(named.doubt, found.against)
     if found.mode != named.mode:
         why = found.against or named.doubt or "too little to tell"
-        doubt = _joined(f"not surely {named.mode}: {why}", wild)
+        doubt = f"not surely {named.mode}: {why}"
     return replace(named, mode=found.mode, confidence=found.confidence, doubt=doubt)
 
 
@@ -147,13 +149,21 @@ def _with_size(named: Classification, cell_radius: float) -> Classification:
     return Classification("other", sure, fits, named.measures, doubt)
 
 
+def _told_of(wild: tuple[int, ...], track: Track) -> str:
+    """Say which records were left out because they lie far off the path."""
+    if not wild:
+        return ""
+    which = ", ".join(f"{record} (t = {track.t[record]:g})" for record in wild)
+    records = "records" if len(wild) > 1 else "record"
+    return f"{records} {which} left out: far off the path, as by a wrong link"
+
+
 def _joined(*doubts: str) -> str:
     return ", ".join(dict.fromkeys(filter(None, doubts)))
 
 
-def name_by_rule(track: Track) -> tuple[Classification, Evidence]:
-    """Name the form of a track by the rule, its fit as confidence, and gather what that is worth."""
-    smoothed = smooth(track)
+def name_by_rule(smoothed: SmoothTrack) -> tuple[Classification, Evidence]:
+    """Name the form of a track by the rule, as sure as it fits, and gather the evidence."""
     still = measure_rest(smoothed.sound.clean, smoothed.noise)
     at_rest = max(rule.stationary(still), key=_fit)
     if at_rest.fit >= 0.5:

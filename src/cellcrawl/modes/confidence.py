@@ -79,7 +79,8 @@ class Curve:
     def probability(self, evidence: np.ndarray) -> np.ndarray:
         """Return the probability (track,) for evidence (track, number)."""
         odds: np.ndarray = self.columns(evidence) @ self.weights
-        return 1.0 / (1.0 + np.exp(-np.clip(odds, -30.0, 30.0)))
+        chance: np.ndarray = 1.0 / (1.0 + np.exp(-np.clip(odds, -30.0, 30.0)))
+        return chance
 
     def adds(self, evidence: np.ndarray) -> np.ndarray:
         """Return what each number adds to the log-odds, (track, number)."""

@@ -126,4 +126,5 @@ def _rhythm(steps: np.ndarray, power: float) -> float:
     mean = float(fast.mean()) if fast.size else 0.0
     if fast.size < 3 or mean * fast.size <= 1e-3 * power * size:
         return 0.0
-    return min(max(float(fast.max()) / mean - math.log(fast.size), 0.0), 20.0)
+    stands_out = float(fast.max()) / mean - math.log(fast.size)
+    return float(min(max(stands_out, 0.0), 20.0))

@@ -39,7 +39,9 @@ _FINE = 8  # steps from one record to the next
 _DEGREES = math.pi / 180.0
 
 
-def mixture(count: int, seed: int, *, fewest: int = FEWEST, most: int = MOST) -> Iterator[SyntheticTrack]:
+def mixture(
+    count: int, seed: int, *, fewest: int = FEWEST, most: int = MOST
+) -> Iterator[SyntheticTrack]:
     """Draw tracks of known mode.
 
     Parameters
@@ -113,18 +115,17 @@ def _pace(random: np.random.Generator, kind: str, when: np.ndarray) -> np.ndarra
     return pace
 
 
-def _heading(
-    random: np.random.Generator, kind: str, when: np.ndarray, records: int
-) -> np.ndarray:
+def _heading(random: np.random.Generator, kind: str, when: np.ndarray, records: int) -> np.ndarray:
     """Return the heading (fine,) against the time on the move, in records."""
     total = max(float(when[-1]), 1.0)
     part = when / total
     match kind.replace(" with pauses", ""):
         case "straight":
             settles = random.uniform(0.001, 0.1)
-            return random.uniform(-0.5, 0.5) * np.exp(-part / settles) + random.uniform(
-                -35.0, 35.0
-            ) * _DEGREES * part
+            return (
+                random.uniform(-0.5, 0.5) * np.exp(-part / settles)
+                + random.uniform(-35.0, 35.0) * _DEGREES * part
+            )
         case "circle" | "uneven circle":
             turns = _even_in_logarithm(random, 120.0 / 360.0, max(0.5, total / 3.0))
             angle = 2.0 * math.pi * turns * part
@@ -157,8 +158,8 @@ def _heading(
             swing = random.uniform(230.0, 330.0) * _DEGREES
             return 0.5 * swing * np.sin(2.0 * math.pi * (cycles * part + random.random()))
         case _:  # switching spin
-            ends = np.cumsum(random.uniform(0.05, 0.3, 60))
-            way = np.where(np.searchsorted(ends, part) % 2 == 0, 1.0, -1.0)
+            changes = np.cumsum(random.uniform(0.05, 0.3, 60))
+            way = np.where(np.searchsorted(changes, part) % 2 == 0, 1.0, -1.0)
             turns = _even_in_logarithm(random, 2.0, max(2.5, total / 6.0))
             return 2.0 * math.pi * turns / when.size * np.cumsum(way)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -90,7 +91,7 @@ def shared_drift(tracks: Iterable[Track]) -> Drift:
     first, last = float(times[0]), float(times[-1])
     whole = _alike(given, first, last)
     edges = np.linspace(first, last, _PARTS + 1)
-    parts = [_alike(given, *ends) for ends in zip(edges[:-1], edges[1:], strict=True)]
+    parts = [_alike(given, *ends) for ends in itertools.pairwise(edges)]
     parts = [part for part in parts if part[2] >= _FEWEST]
     best = whole
     if len(parts) == _PARTS:

@@ -58,12 +58,13 @@ def edge_series(
     Notes
     -----
     *Smoothing.* The staircase of pixels makes the edge too long, by up to 4/pi, and its curvature
-    meaningless. The outline is smoothed by a spline in arclength (of third order, which damps a
-    wavelength ``w`` to half where ``w`` is the ``smoothing_length``), as much as the tolerance
-    allows and no more; it keeps the area of the polygon it was read from. On rasterised circles
-    and ellipses of 40 pixels the length is right to 1 percent, the curvature of a circle to 3 and
-    that of an ellipse of aspect ratio 1.5 to about 7 (root mean square, over the mean). Features smaller than the smoothing length, filopodia among
-    them, are lost to the curvature.
+    meaningless. An outline that goes round pixels is taken through the middles of their sides; the
+    outline is then smoothed by a spline in arclength (of third order, which damps a wavelength
+    ``w`` to half where ``w`` is the ``smoothing_length``), as much as the tolerance allows and no
+    more; it keeps the area of the polygon it was read from. On rasterised circles and ellipses of
+    40 pixels the length is right to 1 percent, the curvature of a circle to 3 and that of an
+    ellipse of aspect ratio 1.5 to 8 (root mean square, over the mean). Features smaller than the
+    smoothing length, filopodia among them, are lost to the curvature.
 
     *Origin.* Node 0 is tracked: from frame to frame nodes are paired so that the sum of squared
     distances between pairs is least, for a shift along the edge. A cell that only moves keeps its
@@ -115,9 +116,7 @@ def _shapes(outlines: Any) -> tuple[list[np.ndarray], np.ndarray, dict[str, Any]
         times = np.arange(len(polygons), dtype=float)
     if not polygons:
         raise InputError("there are no outlines")
-    shapes = [
-        real_array(f"outline {i}", polygon, (None, 2)) for i, polygon in enumerate(polygons)
-    ]
+    shapes = [real_array(f"outline {i}", polygon, (None, 2)) for i, polygon in enumerate(polygons)]
     for i, shape in enumerate(shapes):
         if shape.shape[0] < 3 or area_of(shape) == 0.0:
             raise InputError(f"outline {i} encloses no area: give at least three corners")

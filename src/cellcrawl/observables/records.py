@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -117,7 +118,7 @@ def _there_and_back(
     """Return first and last records of stretches that a leap leads to and another leads back."""
     leaps = np.flatnonzero(steps > least).tolist()
     found = []
-    for before, after in zip(leaps[:-1], leaps[1:], strict=True):
+    for before, after in itertools.pairwise(leaps):
         if after - before <= _IN_A_ROW:
             across = np.hypot(x[after + 1] - x[before], y[after + 1] - y[before])
             if across < _BACK * min(steps[before], steps[after]):

@@ -12,6 +12,8 @@ from cellcrawl.microscopy.track import Track
 from cellcrawl.observables.inputs import records_with
 from cellcrawl.validation import real_array, without_masked
 
+__all__ = ["Track", "as_track", "units_of"]
+
 
 def as_track(run: Any, x: Any = None, y: Any = None, *, at_least: int = 2) -> Track:
     """Return the centroid track of a run, or of plain arrays.

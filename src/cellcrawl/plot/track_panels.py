@@ -42,7 +42,8 @@ def drawn(tracks: Sequence[Track]) -> list[int]:
     """Return which tracks are drawn where there are too many: evenly spread."""
     if len(tracks) <= _MOST_DRAWN:
         return list(range(len(tracks)))
-    return np.linspace(0, len(tracks) - 1, _MOST_DRAWN).round().astype(int).tolist()
+    chosen: list[int] = np.linspace(0, len(tracks) - 1, _MOST_DRAWN).round().astype(int).tolist()
+    return chosen
 
 
 def colour_of(result: Classification | None) -> str:
@@ -66,7 +67,7 @@ def draw_paths(
         colours.append(colour_of(results[i]))
     ax.add_collection(LineCollection(lines, colors=colours, linewidths=0.7, alpha=0.85))
     ends = np.array([line[-1] for line in lines])
-    ax.scatter(*ends.T, s=3.0, c=colours, linewidths=0.0, zorder=3)
+    ax.scatter(ends[:, 0], ends[:, 1], s=3.0, c=colours, linewidths=0.0, zorder=3)
     points = np.concatenate(lines)
     low, high = points.min(axis=0), points.max(axis=0)
     span = max(float((high - low).max()), 1e-12)
@@ -115,9 +116,9 @@ def draw_counts(ax: Axes, results: Sequence[Classification | None]) -> None:
     unnamed = sum(r is None for r in results)
     if unnamed:
         rows.append(("not named", UNNAMED, unnamed, 1.0))
-    for place, (_, colour, count, sure) in enumerate(rows):
+    for place, (_, colour, count, confidence) in enumerate(rows):
         ax.barh(place, count, color=colour, alpha=0.35, height=0.7)
-        ax.barh(place, count * sure, color=colour, height=0.7, edgecolor=EDGE, linewidth=0.3)
+        ax.barh(place, count * confidence, color=colour, height=0.7, edgecolor=EDGE, linewidth=0.3)
         ax.text(count, place, f" {count:.0f}", va="center", ha="left")
     ax.set_yticks(range(len(rows)), [row[0] for row in rows])
     ax.set_ylim(len(rows) - 0.4, -0.6)

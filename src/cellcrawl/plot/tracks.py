@@ -72,7 +72,9 @@ def tracks(
     chosen = _examples(given, found, examples)
     rows = -(-len(chosen) // _ACROSS)
     with paper_figure(PAGE, 4.5 + 1.75 * rows) as figure:
-        parts = figure.subfigures(2 if rows else 1, 1, height_ratios=[4.5, 1.75 * rows][: 1 + (rows > 0)])
+        parts = figure.subfigures(
+            2 if rows else 1, 1, height_ratios=[4.5, 1.75 * rows][: 1 + (rows > 0)]
+        )
         above, below = (parts[0], parts[1]) if rows else (parts, None)
         panels = above.subplot_mosaic(
             [["place", "start", "modes"], ["msd", "msd", "rose"]],
@@ -109,7 +111,9 @@ def tracks(
     return figure
 
 
-def compare_tracks(series: Mapping[str, Any], results: Mapping[str, Results] | None = None) -> Figure:
+def compare_tracks(
+    series: Mapping[str, Any], results: Mapping[str, Results] | None = None
+) -> Figure:
     """Draw tracks of a model and of data side by side, the same panels for each.
 
     Parameters
@@ -137,8 +141,8 @@ def compare_tracks(series: Mapping[str, Any], results: Mapping[str, Results] | N
         raise InputError("there is nothing to compare: give names and tracks")
     kinds = {name: as_tracks(given) for name, given in series.items()}
     with paper_figure(PAGE, 7.4) as figure:
-        columns = figure.subfigures(1, len(kinds), squeeze=False)[0]
-        for column, (name, given) in zip(columns, kinds.items(), strict=True):
+        columns: Any = figure.subfigures(1, len(kinds), squeeze=False)
+        for column, (name, given) in zip(columns[0], kinds.items(), strict=True):
             found = _results(given, (results or {}).get(name))
             panels = column.subplot_mosaic(
                 [["start"], ["modes"], ["msd"], ["rose"]],
@@ -162,9 +166,10 @@ def as_tracks(given: Any) -> Tracks:
         given = [given]
     if not isinstance(given, Tracks):
         given = Tracks.of([as_track(one) for one in given])
-    if len(given) == 0:
+    found: Tracks = given
+    if len(found) == 0:
         raise InputError("there are no tracks to draw")
-    return given
+    return found
 
 
 def _results(given: Tracks, results: Results | None) -> Results:
