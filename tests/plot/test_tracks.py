@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import cellcrawl as cc
-from cellcrawl.command_line.main import main
+from cellcrawl.command_line.main import run
 from cellcrawl.microscopy import Track, Tracks
 from tests.runs import circling
 from tests.tracks import circle_track, sine_track, straight_track
@@ -42,7 +42,7 @@ def test_a_sheet_shows_tracks_of_every_mode_and_counts_all():
 def test_pictures_are_those_of_the_screen():
     for y_down, sense in ((False, 1.0), (True, -1.0)):
         figure = cc.plot.tracks(some_tracks(y_down)[1:2], examples=1)
-        heading = figure.axes[-1].lines[0].get_ydata()
+        heading = figure.axes[-4].lines[0].get_ydata()
         assert np.sign(heading[-1]) == sense
 
 
@@ -66,8 +66,8 @@ def test_a_table_becomes_a_sheet_in_one_command(tmp_path, capsys, command):
     t, x, y = circle_track(records=60, step=1.0)
     rows = [f"{k},{a},{b + 9 * k},{c}" for k in range(2) for a, b, c in zip(t, x, y, strict=True)]
     table.write_text("track,t,x,y\n" + "\n".join(rows) + "\n")
-    assert main([command, str(table), "--dpi", "40"]) == 0
+    assert run([command, str(table), "--dpi", "40"]) == 0
     said = capsys.readouterr().out
     assert "2 rotational" in said
     assert (tmp_path / "cells-tracks.png").stat().st_size > 1000
-    assert main([command, str(tmp_path / "none.csv")]) == 2
+    assert run([command, str(tmp_path / "none.csv")]) == 2

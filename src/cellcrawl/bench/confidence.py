@@ -21,7 +21,7 @@ from cellcrawl.plot.style import INK, PAGE, RIM, TRACK, paper_figure
 SEED: Final = 2024
 """Of the tracks that the confidence is fitted to; it is checked on others."""
 _CHECK_SEED: Final = 7
-_TRACKS: Final = 40_000
+_TRACKS: Final = 30_000
 _PART: Final = 500
 LENGTHS: Final = ((12, 24), (25, 60), (61, 200), (201, 1000))
 """Numbers of records that are looked at apart."""
