@@ -167,6 +167,16 @@ def test_cells_that_follow_each_other_are_never_made_one_track(tmp_path):
     assert len(read(tmp_path, content, columns="id=none,t=t,x=x,y=y")) == 1
 
 
+@pytest.mark.parametrize("between", ["\n", "\n\n", ",,\n", "  \n"])
+def test_blank_lines_keep_tracks_apart_where_there_is_no_id(between, tmp_path):
+    blocks = ["".join(f"{10 * c + i},{3 * c + i},{i}\n" for i in range(4)) for c in range(3)]
+    content = "t,x,y\n" + between.join(blocks) + "\n\n"
+    tracks = read(tmp_path, content)
+    assert tracks.ids == ("1", "2", "3")
+    np.testing.assert_array_equal(tracks["3"].t, [20, 21, 22, 23])
+    assert "blank lines keep the tracks apart" in tracks.summary()
+
+
 def test_a_state_that_changes_on_the_way_is_no_id(tmp_path):
     rows = [f"{int(i > 7)},{i},{i},{0.5 * i}" for i in range(20)]
     assert len(read(tmp_path, "state,t,x,y\n" + "\n".join(rows))) == 1

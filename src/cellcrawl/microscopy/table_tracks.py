@@ -15,7 +15,14 @@ from cellcrawl.microscopy.columns import Columns, chosen, plain, recognise
 from cellcrawl.microscopy.grouping import rows_told, tracks_of_records
 from cellcrawl.microscopy.options import Reading
 from cellcrawl.microscopy.source import LeftOut, Source
-from cellcrawl.microscopy.tables import Cells, Form, clock_seconds, form_of, read_cells
+from cellcrawl.microscopy.tables import (
+    Cells,
+    Form,
+    blocks_of,
+    clock_seconds,
+    form_of,
+    read_cells,
+)
 from cellcrawl.microscopy.track import Tracks
 
 _JUMP = 3.0  # times the longest step within a block at which two blocks are two cells
@@ -32,6 +39,10 @@ def read_table_tracks(path: Path, reading: Reading) -> Tracks:
     notes: list[str] = []
     out = [LeftOut(f"row {row}", "it has another number of cells", 1) for row in cells.torn]
     codes, ids = _ids(cells, columns)
+    if len(ids) == 1 and ids[0] == "" and reading.columns is None:
+        codes, ids = _blocks(form, codes)
+        if len(ids) > 1:
+            notes.append("no column of ids: blank lines keep the tracks apart")
     line = form.first + 1
     numbers = {}
     for role in ("x", "y", "t", "frame"):
@@ -56,7 +67,7 @@ def read_table_tracks(path: Path, reading: Reading) -> Tracks:
             out.append(LeftOut(rows_told(bad, line), reason, bad.size))
         numbers[role] = values
     t, role, units = _times(path, numbers, columns, reading, codes, len(ids))
-    if "id" not in columns.places:
+    if "id" not in columns.places and len(ids) == 1:
         _no_hidden_id(form, cells, columns, t, numbers, given=reading.columns is not None)
     if "z" in columns.places:
         depth = cells.numbers(columns.places["z"])[0]
@@ -226,6 +237,15 @@ def _ids(cells: Cells, columns: Columns) -> tuple[np.ndarray, list[str]]:
             for pair in pairs[order]
         ]
     return codes, names
+
+
+def _blocks(form: Form, codes: np.ndarray) -> tuple[np.ndarray, list[str]]:
+    """Return tracks that stand in blocks with blank lines between them."""
+    blocks = blocks_of(form)
+    if blocks.size != codes.size or blocks[-1] == 0:
+        return codes, [""]
+    numbers, blocks = np.unique(blocks, return_inverse=True)
+    return blocks.astype(np.int64), [str(int(number) + 1) for number in numbers]
 
 
 def _plain_ids(column: pa.Array) -> pa.Array:

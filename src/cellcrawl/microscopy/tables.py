@@ -168,6 +168,16 @@ def read_cells(form: Form, places: Sequence[int]) -> Cells:
     return Cells(columns, form.decimal, tuple(torn))
 
 
+def blocks_of(form: Form) -> np.ndarray:
+    """Return the number of the block of each row: blocks have blank lines between them."""
+    text = form.path.read_bytes().decode(form.encoding, errors="replace")
+    lines = re.split(r"\r\n|\n|\r", text)[form.first :]
+    bare = [not line.strip(f'{form.separator} \t"') for line in lines]
+    filled = [bool(line.strip()) for line in lines]  # what the parser makes a row of
+    begins = np.array([False, *bare[:-1]]) & ~np.array(bare)
+    return np.asarray(np.cumsum(begins)[np.array(filled)])
+
+
 def decoded(data: bytes) -> str:
     """Return text whatever wrote it: UTF-8 or UTF-16 with or without a mark, else Latin-1."""
     return data.decode(_encoding(data), errors="replace")

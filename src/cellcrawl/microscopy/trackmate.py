@@ -56,7 +56,8 @@ def read_trackmate_tracks(path: Path, reading: Reading) -> Tracks:
 def read_trackmate_outlines(path: Path, reading: Reading) -> Outlines:
     """Read the outlines of a TrackMate model file; see `cellcrawl.read_outlines`.
 
-    Spots of no track, and those of tracks that split or merge, are left out and listed.
+    Spots of no track, and those of tracks that split or merge, are left out and listed. In a file
+    without any track every spot is a cell of its own.
     """
     reading.without_columns(str(path))
     model = _model(path)
@@ -65,7 +66,11 @@ def read_trackmate_outlines(path: Path, reading: Reading) -> Outlines:
             f"{path} holds spots without outlines: use a detector that gives them (mask, label, "
             "thresholding, cellpose, StarDist), or read its tracks"
         )
-    codes, ids, left_out, notes = _linked(model, path)
+    if any(model.edges.values()):
+        codes, ids, left_out, notes = _linked(model, path)
+    else:  # a segmentation that was not linked
+        codes, ids = np.arange(len(model.t)), [f"spot {spot}" for spot in model.spots]
+        left_out, notes = [], ["the spots are not linked: each outline is a cell of its own"]
     t, units = _times(model, reading)
     source = Source(
         str(path), "TrackMate XML with outlines", {}, model.length_units, units, True, tuple(notes)
