@@ -148,9 +148,11 @@ def _model(path: Path) -> Model:
             ends = (element.get("SPOT_SOURCE_ID"), element.get("SPOT_TARGET_ID"))
             model.edges[track].append((int(ends[0] or -1), int(ends[1] or -1)))
         elif element.tag == "TrackID":
-            model.kept = [*(model.kept or []), element.get("TRACK_ID", "")]
-        elif element.tag == "FilteredTracks":
-            model.kept = model.kept or []
+            if model.kept is None:
+                model.kept = []
+            model.kept.append(element.get("TRACK_ID", ""))
+        elif element.tag == "FilteredTracks" and model.kept is None:
+            model.kept = []
         elif element.tag == "ImageData":
             model.frame_interval = float(element.get("timeinterval") or 0.0)
         elif element.tag in ("SpotsInFrame", "Track"):
@@ -185,6 +187,7 @@ def _add_spot(model: Model, element: ElementTree.Element, path: Path) -> None:
 def _linked(model: Model, path: Path) -> tuple[np.ndarray, list[str], list[LeftOut], list[str]]:
     """Return the track of each spot, -1 for none, by the edges between spots."""
     codes = np.full(len(model.t), -1, np.int64)
+    frames = np.array(model.frame)
     ids: list[str] = []
     left_out: list[LeftOut] = []
     notes: list[str] = []
@@ -206,7 +209,7 @@ def _linked(model: Model, path: Path) -> tuple[np.ndarray, list[str], list[LeftO
             gone |= set(ends.ravel().tolist())
             continue
         ends = np.where(
-            (np.array(model.frame)[ends[:, 0]] > np.array(model.frame)[ends[:, 1]])[:, None],
+            (frames[ends[:, 0]] > frames[ends[:, 1]])[:, None],
             ends[:, ::-1],
             ends,
         )
