@@ -11,7 +11,14 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from cellcrawl.errors import InputError
-from cellcrawl.microscopy.columns import Columns, chosen, plain, recognise
+from cellcrawl.microscopy.columns import (
+    Columns,
+    chosen,
+    plain,
+    recognise,
+    side_by_side,
+    time_column,
+)
 from cellcrawl.microscopy.grouping import rows_told, tracks_of_records
 from cellcrawl.microscopy.options import Reading
 from cellcrawl.microscopy.source import LeftOut, Source
@@ -31,6 +38,10 @@ _JUMP = 3.0  # times the longest step within a block at which two blocks are two
 def read_table_tracks(path: Path, reading: Reading) -> Tracks:
     """Read the tracks of a plain table; see `cellcrawl.read_tracks`."""
     form = form_of(path)
+    if reading.columns is None and recognise(form.names, form.units) is None:
+        cells_beside = side_by_side(form.names)
+        if cells_beside:
+            return _side_by_side(path, form, cells_beside, reading)
     columns, program = _columns(form, reading.columns)
     places = [*columns.places.values(), *columns.groups]
     if "id" not in columns.places:
@@ -90,6 +101,36 @@ def read_table_tracks(path: Path, reading: Reading) -> Tracks:
     return tracks_of_records(codes, ids, t, x, y, scaled, out, parents)
 
 
+def _side_by_side(
+    path: Path, form: Form, beside: list[tuple[str, int, int]], reading: Reading
+) -> Tracks:
+    """Read a table with a row a frame and two columns a cell; blanks where a cell is not seen."""
+    place, role, units = time_column(form.names)
+    places = [*(p for _, *pair in beside for p in pair), *([] if place is None else [place])]
+    cells = read_cells(form, places)
+    numbers: dict[str, np.ndarray] = {}
+    out = [LeftOut(f"row {row}", "it has another number of cells", 1) for row in cells.torn]
+    rows = len(cells.columns[places[0]])
+    x, y = np.empty((2, len(beside), rows))
+    for number, (name, *pair) in enumerate(beside):
+        for values, at in zip((x, y), pair, strict=True):
+            values[number], bad = cells.numbers(at)
+            if bad.size:
+                told = f"{name}, {rows_told(bad, form.first + 1)}"
+                out.append(LeftOut(told, "no number", bad.size))
+    if place is not None:
+        numbers[role] = cells.numbers(place)[0]
+    columns = Columns({"x": beside[0][1], "y": beside[0][2]}, time_units=units, names=form.names)
+    t, role, units = _times(path, numbers, columns, reading, np.zeros(rows, np.int64), 1)
+    taken = {role: "rows" if place is None else form.names[place]}
+    note = f"{len(beside)} cells side by side, two columns each"
+    source = Source(str(path), f"plain table ({form})", taken, "", units, False, (note,))
+    source, x, y = reading.scaled(source, x, y)
+    codes = np.repeat(np.arange(len(beside)), rows)
+    ids = [name for name, _, _ in beside]
+    return tracks_of_records(codes, ids, np.tile(t, len(beside)), x.ravel(), y.ravel(), source, out)
+
+
 def _columns(
     form: Form, wanted: str | Mapping[str, str | int] | None
 ) -> tuple[Columns, tuple[str, bool, str]]:
@@ -123,7 +164,7 @@ def _program(form: Form, columns: Columns) -> tuple[str, bool, str]:
         return "TrackMate spots table", True, ""
     if {"id", "t", "parent", "root", "generation"} <= names:
         return "btrack table", True, "pixel"
-    if any(name.startswith("trackobjects") for name in names) or across == "locationcenterx":
+    if any("trackobjects" in name for name in names) or across.endswith("locationcenterx"):
         return "CellProfiler table", True, "pixel"
     if {"trackn", "slicen"} <= names:
         return "ImageJ Manual Tracking table", True, "pixel"

@@ -16,7 +16,7 @@ import pyarrow.compute as pc
 import pyarrow.csv
 
 from cellcrawl.errors import InputError
-from cellcrawl.microscopy.columns import recognise
+from cellcrawl.microscopy.columns import are_units, recognise
 
 BLANKS = ("", "NA", "N/A", "NaN", "nan", "NAN", "null", "NULL", "None", "none", "-", "#N/A", "?")
 _HEAD = 1 << 16  # bytes looked at to find out the form
@@ -325,7 +325,8 @@ def _names(above: Sequence[str], header: int, separator: str) -> tuple[list[str]
     for line in above[header + 1 :]:
         cells = [cell.strip() for cell in _split(line, separator)]
         filled = [cell for cell in cells if cell]
-        if filled and all(re.fullmatch(r"[\[(].*[\])]", cell) for cell in filled):
+        bracketed = filled and all(re.fullmatch(r"[\[(].*[\])]", cell) for cell in filled)
+        if bracketed or are_units(cells):
             return names, cells
     return names, []
 
