@@ -15,16 +15,12 @@ from cellcrawl.command_line.main import run
 
 FOLDER = Path(__file__).parents[1] / "data" / "cases"
 CASES = json.loads((FOLDER / "expected.json").read_text(encoding="utf-8"))["cases"]
-# The measures of tracks fall short here: each must leave this list with the change that mends it.
-AWAITED = {"c21", "c23", "c27", "c45", "c47", "c49", "c51", "c53", "c55"}
 
 
 def marked(name):
     marks = []
     if CASES[name]["how"] == "many":
         marks.append(pytest.mark.slow)
-    if name in AWAITED:
-        marks.append(pytest.mark.xfail(reason="the measures of tracks fall short"))
     return pytest.param(name, marks=marks)
 
 

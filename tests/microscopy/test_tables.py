@@ -167,6 +167,16 @@ def test_cells_that_follow_each_other_are_never_made_one_track(tmp_path):
     assert len(read(tmp_path, content, columns="id=none,t=t,x=x,y=y")) == 1
 
 
+@pytest.mark.parametrize("between", ["\n", "\n\n", ",,\n", "  \n"])
+def test_blank_lines_keep_tracks_apart_where_there_is_no_id(between, tmp_path):
+    blocks = ["".join(f"{10 * c + i},{3 * c + i},{i}\n" for i in range(4)) for c in range(3)]
+    content = "t,x,y\n" + between.join(blocks) + "\n\n"
+    tracks = read(tmp_path, content)
+    assert tracks.ids == ("1", "2", "3")
+    np.testing.assert_array_equal(tracks["3"].t, [20, 21, 22, 23])
+    assert "blank lines keep the tracks apart" in tracks.summary()
+
+
 def test_a_state_that_changes_on_the_way_is_no_id(tmp_path):
     rows = [f"{int(i > 7)},{i},{i},{0.5 * i}" for i in range(20)]
     assert len(read(tmp_path, "state,t,x,y\n" + "\n".join(rows))) == 1
@@ -198,6 +208,40 @@ def test_columns_may_be_named_by_the_caller(tmp_path):
         read(tmp_path, content, columns="who=id")
     with pytest.raises(cc.InputError, match="must name y"):
         read(tmp_path, content, columns="x=east")
+
+
+@pytest.mark.parametrize("pattern", ["x{}", "X_{}", "{}_x", "{} x"])
+def test_cells_side_by_side_are_cells_of_their_own(pattern, tmp_path):
+    ids = ("a", "b")
+    y_of = pattern.replace("x", "y").replace("X", "Y")
+    names = [p.format(c) for c in ids for p in (pattern, y_of)]
+    lines = [",".join(["frame", *names])]
+    for t in range(5):
+        found = {n: (x, y) for n, when, x, y in RECORDS if when == t}
+        lines.append(",".join([str(t), *(str(v) for c in ids for v in found.get(c, ("", "")))]))
+    tracks = read(tmp_path, "\n".join(lines))
+    must_be_the_two_cells(tracks)
+    assert "2 cells side by side" in tracks.summary()
+
+
+def test_units_may_stand_below_the_names(tmp_path):
+    rows = text().splitlines()
+    source = read(tmp_path, "\n".join([rows[0], ",min,um,um", *rows[1:]])).source
+    assert (source.length_units, source.time_units) == ("µm", "min")
+
+
+def test_cellprofilers_names_may_begin_with_the_object(tmp_path):
+    names = ("Nuclei_TrackObjects_Label_30", "ImageNumber")
+    content = text((*names, "Nuclei_Location_Center_X", "Nuclei_Location_Center_Y"))
+    tracks = read(tmp_path, content)
+    must_be_the_two_cells(tracks)
+    assert tracks.source.y_down
+
+
+def test_a_number_of_records_is_no_id(tmp_path):
+    content = "ID,t,x,y\n" + "".join(f"{i},{i % 5},{i},{i}\n" for i in range(10))
+    with pytest.raises(cc.InputError, match="ID seems to number records"):
+        read(tmp_path, content)
 
 
 def test_a_table_without_names_is_told_by_its_content(tmp_path):

@@ -35,7 +35,17 @@ _FRAMES = (
         "imagenumber",
     ),
     *("image", "imageid", "imageindex", "imageno", "timepoint", "timepoints", "timeindex", "tp"),
-    *("timestep", "timeframe", "step", "metadataframe", "metadatat", "metadatatime", "ti", "tidx"),
+    *(
+        "timeslice",
+        "timestep",
+        "timeframe",
+        "step",
+        "metadataframe",
+        "metadatat",
+        "metadatatime",
+        "ti",
+        "tidx",
+    ),
     *("metadatatimepoint", "timeidx", "timeid", "timepointid", "framet", "frameidx"),
 )
 _ABSCISSAS = (
@@ -45,6 +55,7 @@ _ABSCISSAS = (
     *("coordinatex", "xcoordinates", "pointx", "xc", "cx", "xm", "xt", "spotx", "xum", "xmicron"),
     *("xmicrons", "xpx", "xpixel", "xpixels", "xmm", "xnm", "meanx", "xmean", "cellx", "xcell"),
 )
+_STEMS = ("locationcenterx", "areashapecenterx", "positionx", "centroidx")
 _ROW_COLUMN = (("col", "row"), ("column", "row"), ("centroid1", "centroid0"), ("cols", "rows"))
 _PARENTS = ("parenttrackid", "parentid", "parent", "mother", "motherid", "parenttrack")
 _GROUPS = (
@@ -145,11 +156,9 @@ def recognise(names: Sequence[str], units: Sequence[str] = ()) -> Columns | None
         found = _first(plains, known, set(places.values()))
         if found is not None:
             places[role] = found
-    labels = [i for i, name in enumerate(plains) if re.fullmatch(r"trackobjectslabel\d*", name)]
+    labels = [i for i, name in enumerate(plains) if re.search(r"trackobjectslabel\d*$", name)]
     if labels:  # CellProfiler counts objects anew in every image; TrackObjects links them
         places["id"] = labels[-1]
-        parents = [i for i, n in enumerate(plains) if n.startswith("trackobjectsparentobject")]
-        places.pop("parent", None) if parents else None
     time, unit = _time(plains, set(places.values()))
     if time is not None:
         places["t"] = time
@@ -165,6 +174,43 @@ def recognise(names: Sequence[str], units: Sequence[str] = ()) -> Columns | None
         told = _unit_of(names[time], units[time] if units else "", _SPANS, "")
         unit = told or unit
     return Columns(places, groups, length, unit, tuple(names))
+
+
+def side_by_side(names: Sequence[str]) -> list[tuple[str, int, int]]:
+    """Return the cells of a table that holds them side by side (x1, y1, x2, y2, ...).
+
+    Each is its name and the places of its x and y; none for fewer than two such pairs.
+    """
+    found = []
+    for place, name in enumerate(names):
+        for pattern in (r"(x)[ _.-]*(\w+)", r"(\w+?)[ _.-]+(x)"):
+            match = re.fullmatch(pattern, name.strip(), re.IGNORECASE)
+            if match is None:
+                continue
+            at = match.start(1 if match[1].lower() == "x" else 2)
+            stripped = name.strip()
+            other = stripped[:at] + ("Y" if stripped[at] == "X" else "y") + stripped[at + 1 :]
+            partner = [i for i, n in enumerate(names) if n.strip() == other]
+            if partner:
+                cell = match[2] if match[1].lower() == "x" else match[1]
+                found.append((cell, place, partner[0]))
+                break
+    return found if len(found) > 1 else []
+
+
+def time_column(names: Sequence[str]) -> tuple[int | None, str, str]:
+    """Return the place of the times, their role (t or frame) and their unit."""
+    plains = [plain(name) for name in names]
+    place, unit = _time(plains, set())
+    if place is not None:
+        return place, "t", _unit_of(names[place], "", _SPANS, "") or unit
+    return _first(plains, _FRAMES, set()), "frame", ""
+
+
+def are_units(cells: Sequence[str]) -> bool:
+    """Whether a line of cells holds nothing but units."""
+    filled = [cell.strip().lower() for cell in cells if cell.strip()]
+    return bool(filled) and all(cell in _LENGTHS or cell in _SPANS for cell in filled)
 
 
 def chosen(wanted: str | Mapping[str, str | int], names: Sequence[str], width: int) -> Columns:
@@ -245,6 +291,11 @@ def _positions(plains: Sequence[str]) -> tuple[int, int] | None:
         other = _in_y(name)
         if name in plains and other in plains:
             return plains.index(name), plains.index(other)
+    for stem in _STEMS:  # CellProfiler's database names begin with the object: Nuclei_Location...
+        for place, name in enumerate(plains):
+            other = name[:-1] + "y"
+            if name.endswith(stem) and other in plains:
+                return place, plains.index(other)
     for across, down in _ROW_COLUMN:
         if across in plains and down in plains:
             return plains.index(across), plains.index(down)
@@ -276,6 +327,8 @@ def _time(plains: Sequence[str], taken: set[int]) -> tuple[int | None, str]:
 
 
 def _unit_of(name: str, below: str, known: Mapping[str, str], suffix_of: str) -> str:
+    if below.strip().lower() in known:
+        return known[below.strip().lower()]
     for text in (below, name):
         for found in _BRACKETS.findall(text):
             if found.strip().lower() in known:

@@ -101,6 +101,8 @@ def tracks_of_records(
     there = np.flatnonzero(sizes)
     if not there.size:
         why = f": {out[0].reason}" if out else ""
+        if lone.size == len(ids) > 1 and "id" in source.columns:
+            why = f": {source.columns['id']} seems to number records, not tracks; use --columns"
         raise InputError(f"{source.path or 'this table'} has no track of two records or more{why}")
     starts = np.concatenate([[0], np.cumsum(sizes[there])])
     return Tracks(

@@ -23,7 +23,7 @@ def read_imagej_rois(path: Path, reading: Reading) -> Outlines:
     roifile = reader("roifile", "ImageJ regions of interest")
     try:
         read = roifile.roiread(path)
-    except (ValueError, OSError, KeyError, IndexError, AttributeError) as error:
+    except Exception as error:  # a damaged file shows itself in many ways
         raise InputError(f"{path} cannot be read as ImageJ regions: {error}") from None
     shapes: list[Shape] = []
     out: list[LeftOut] = []

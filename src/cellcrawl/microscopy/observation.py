@@ -136,7 +136,9 @@ def observe(
         x, y = _roughened(x, y, edge_error, pixel, random)
     shift = error * random.standard_normal((2, count, 1))
     x, y = x + shift[0], y + shift[1]
-    left, top = float(x.min()) - _MARGIN * pixel, float(y.max()) + _MARGIN * pixel
+    # The grid of a camera knows nothing of the cell: it lies anywhere between two pixels.
+    aside = _MARGIN + random.random(2)
+    left, top = float(x.min()) - aside[0] * pixel, float(y.max()) + aside[1] * pixel
     columns = int(np.ceil((x.max() - left) / pixel)) + _MARGIN
     rows = int(np.ceil((top - y.min()) / pixel)) + _MARGIN
     if count * rows * columns > _LARGEST:

@@ -27,10 +27,8 @@ def centroid_of(xy: np.ndarray) -> np.ndarray:
 
 
 def without_repeats(xy: np.ndarray) -> np.ndarray:
-    """Return the vertices without those equal to the one before, the closing one included."""
-    if len(xy) == 0:
-        return xy
-    return xy[np.any(xy != np.roll(xy, 1, axis=0), axis=1)] if len(xy) > 1 else xy
+    """Return the vertices without those equal to the next, the closing one included."""
+    return xy[np.any(xy != np.roll(xy, -1, axis=0), axis=1)] if len(xy) > 1 else xy
 
 
 def equally_spaced(xy: np.ndarray, nodes: int) -> np.ndarray:

@@ -39,18 +39,19 @@ def rasterised(xy: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
 
 def opened(mask: np.ndarray, radius: float) -> np.ndarray:
     """Return a mask without what a disk of this radius, in pixels, does not fit into."""
+    outside = np.pad(~mask, int(np.ceil(radius)) + 1, constant_values=True)
+    eroded = ~widened(outside, radius)
+    reach = int(np.ceil(radius)) + 1
+    return np.asarray(widened(eroded, radius)[reach:-reach, reach:-reach] & mask)
+
+
+def widened(mask: np.ndarray, radius: float) -> np.ndarray:
+    """Return the pixels within this distance, in pixels, of those of a mask."""
     reach = int(np.ceil(radius)) + 1
     padded = np.pad(mask, reach).astype(float)
     j, i = np.mgrid[-reach : reach + 1, -reach : reach + 1]
     disk = np.zeros(padded.shape)
-    inside = np.hypot(i, j) <= radius
-    disk[: 2 * reach + 1, : 2 * reach + 1] = inside
+    disk[: 2 * reach + 1, : 2 * reach + 1] = np.hypot(i, j) <= radius
     disk = np.roll(disk, (-reach, -reach), axis=(0, 1))
-    kernel = np.fft.rfft2(disk)
-
-    def covered(image: np.ndarray) -> np.ndarray:
-        return np.asarray(np.fft.irfft2(np.fft.rfft2(image) * kernel, s=image.shape))
-
-    eroded = covered(padded) > inside.sum() - 0.5
-    spread = covered(eroded.astype(float)) > 0.5
-    return np.asarray(spread[reach:-reach, reach:-reach] & mask)
+    covered = np.fft.irfft2(np.fft.rfft2(padded) * np.fft.rfft2(disk), s=padded.shape)
+    return np.asarray(covered[reach:-reach, reach:-reach] > 0.5)

@@ -13,7 +13,8 @@ from cellcrawl.microscopy.tiff_labels import CTC_TABLES
 
 _HEAD = 1 << 15
 _TIFF = (b"II*\x00", b"MM\x00*", b"II+\x00", b"MM\x00+")
-_COORDINATES = re.compile(r"\s*-?\d+(\.\d+)?(,-?\d+(\.\d+)?){5,}\s*")
+_LONG_LINE = 150
+_COORDINATES = re.compile(r"(-?\d+(\.\d+)?,){20,}")
 
 
 def form_of_file(path: Path) -> str:
@@ -98,10 +99,7 @@ def _text(path: Path, head: bytes) -> str:
     if re.search(r"^cls\s*=\s*\(?['\"]celltool|^points\s*=[\\\s]*array\(", text, re.MULTILINE):
         return "celltool"
     lines = [line for line in text.splitlines() if line.strip()]
-    whole = lines[:-1] if len(head) == _HEAD and len(lines) > 1 else lines
-    if whole and all(_COORDINATES.fullmatch(line) for line in whole):
-        counts = {line.count(",") for line in whole}
-        # A table without names has as many cells in each row; outlines differ in length.
-        if all(count % 2 for count in counts) and (len(counts) > 1 or min(counts) > 30):
-            return "cellpose outlines"
+    # A table without names has as many cells in each row, and few; outlines are long and differ.
+    if len(lines[0]) > _LONG_LINE and _COORDINATES.match(lines[0][:200] + ","):
+        return "cellpose outlines"
     return "table"

@@ -11,11 +11,25 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from cellcrawl.errors import InputError
-from cellcrawl.microscopy.columns import Columns, chosen, plain, recognise
+from cellcrawl.microscopy.columns import (
+    Columns,
+    chosen,
+    plain,
+    recognise,
+    side_by_side,
+    time_column,
+)
 from cellcrawl.microscopy.grouping import rows_told, tracks_of_records
 from cellcrawl.microscopy.options import Reading
 from cellcrawl.microscopy.source import LeftOut, Source
-from cellcrawl.microscopy.tables import Cells, Form, clock_seconds, form_of, read_cells
+from cellcrawl.microscopy.tables import (
+    Cells,
+    Form,
+    blocks_of,
+    clock_seconds,
+    form_of,
+    read_cells,
+)
 from cellcrawl.microscopy.track import Tracks
 
 _JUMP = 3.0  # times the longest step within a block at which two blocks are two cells
@@ -24,6 +38,10 @@ _JUMP = 3.0  # times the longest step within a block at which two blocks are two
 def read_table_tracks(path: Path, reading: Reading) -> Tracks:
     """Read the tracks of a plain table; see `cellcrawl.read_tracks`."""
     form = form_of(path)
+    if reading.columns is None and recognise(form.names, form.units) is None:
+        cells_beside = side_by_side(form.names)
+        if cells_beside:
+            return _side_by_side(path, form, cells_beside, reading)
     columns, program = _columns(form, reading.columns)
     places = [*columns.places.values(), *columns.groups]
     if "id" not in columns.places:
@@ -32,6 +50,10 @@ def read_table_tracks(path: Path, reading: Reading) -> Tracks:
     notes: list[str] = []
     out = [LeftOut(f"row {row}", "it has another number of cells", 1) for row in cells.torn]
     codes, ids = _ids(cells, columns)
+    if len(ids) == 1 and ids[0] == "" and reading.columns is None:
+        codes, ids = _blocks(form, codes)
+        if len(ids) > 1:
+            notes.append("no column of ids: blank lines keep the tracks apart")
     line = form.first + 1
     numbers = {}
     for role in ("x", "y", "t", "frame"):
@@ -56,7 +78,7 @@ def read_table_tracks(path: Path, reading: Reading) -> Tracks:
             out.append(LeftOut(rows_told(bad, line), reason, bad.size))
         numbers[role] = values
     t, role, units = _times(path, numbers, columns, reading, codes, len(ids))
-    if "id" not in columns.places:
+    if "id" not in columns.places and len(ids) == 1:
         _no_hidden_id(form, cells, columns, t, numbers, given=reading.columns is not None)
     if "z" in columns.places:
         depth = cells.numbers(columns.places["z"])[0]
@@ -77,6 +99,36 @@ def read_table_tracks(path: Path, reading: Reading) -> Tracks:
     scaled, x, y = reading.scaled(source, numbers["x"], numbers["y"])
     parents = _parents(cells, columns, ids, codes)
     return tracks_of_records(codes, ids, t, x, y, scaled, out, parents)
+
+
+def _side_by_side(
+    path: Path, form: Form, beside: list[tuple[str, int, int]], reading: Reading
+) -> Tracks:
+    """Read a table with a row a frame and two columns a cell; blanks where a cell is not seen."""
+    place, role, units = time_column(form.names)
+    places = [*(p for _, *pair in beside for p in pair), *([] if place is None else [place])]
+    cells = read_cells(form, places)
+    numbers: dict[str, np.ndarray] = {}
+    out = [LeftOut(f"row {row}", "it has another number of cells", 1) for row in cells.torn]
+    rows = len(cells.columns[places[0]])
+    x, y = np.empty((2, len(beside), rows))
+    for number, (name, *pair) in enumerate(beside):
+        for values, at in zip((x, y), pair, strict=True):
+            values[number], bad = cells.numbers(at)
+            if bad.size:
+                told = f"{name}, {rows_told(bad, form.first + 1)}"
+                out.append(LeftOut(told, "no number", bad.size))
+    if place is not None:
+        numbers[role] = cells.numbers(place)[0]
+    columns = Columns({"x": beside[0][1], "y": beside[0][2]}, time_units=units, names=form.names)
+    t, role, units = _times(path, numbers, columns, reading, np.zeros(rows, np.int64), 1)
+    taken = {role: "rows" if place is None else form.names[place]}
+    note = f"{len(beside)} cells side by side, two columns each"
+    source = Source(str(path), f"plain table ({form})", taken, "", units, False, (note,))
+    source, x, y = reading.scaled(source, x, y)
+    codes = np.repeat(np.arange(len(beside)), rows)
+    ids = [name for name, _, _ in beside]
+    return tracks_of_records(codes, ids, np.tile(t, len(beside)), x.ravel(), y.ravel(), source, out)
 
 
 def _columns(
@@ -112,7 +164,7 @@ def _program(form: Form, columns: Columns) -> tuple[str, bool, str]:
         return "TrackMate spots table", True, ""
     if {"id", "t", "parent", "root", "generation"} <= names:
         return "btrack table", True, "pixel"
-    if any(name.startswith("trackobjects") for name in names) or across == "locationcenterx":
+    if any("trackobjects" in name for name in names) or across.endswith("locationcenterx"):
         return "CellProfiler table", True, "pixel"
     if {"trackn", "slicen"} <= names:
         return "ImageJ Manual Tracking table", True, "pixel"
@@ -226,6 +278,15 @@ def _ids(cells: Cells, columns: Columns) -> tuple[np.ndarray, list[str]]:
             for pair in pairs[order]
         ]
     return codes, names
+
+
+def _blocks(form: Form, codes: np.ndarray) -> tuple[np.ndarray, list[str]]:
+    """Return tracks that stand in blocks with blank lines between them."""
+    blocks = blocks_of(form)
+    if blocks.size != codes.size or blocks[-1] == 0:
+        return codes, [""]
+    numbers, blocks = np.unique(blocks, return_inverse=True)
+    return blocks.astype(np.int64), [str(int(number) + 1) for number in numbers]
 
 
 def _plain_ids(column: pa.Array) -> pa.Array:

@@ -16,7 +16,7 @@ import pyarrow.compute as pc
 import pyarrow.csv
 
 from cellcrawl.errors import InputError
-from cellcrawl.microscopy.columns import recognise
+from cellcrawl.microscopy.columns import are_units, recognise
 
 BLANKS = ("", "NA", "N/A", "NaN", "nan", "NAN", "null", "NULL", "None", "none", "-", "#N/A", "?")
 _HEAD = 1 << 16  # bytes looked at to find out the form
@@ -168,6 +168,16 @@ def read_cells(form: Form, places: Sequence[int]) -> Cells:
     return Cells(columns, form.decimal, tuple(torn))
 
 
+def blocks_of(form: Form) -> np.ndarray:
+    """Return the number of the block of each row: blocks have blank lines between them."""
+    text = form.path.read_bytes().decode(form.encoding, errors="replace")
+    lines = re.split(r"\r\n|\n|\r", text)[form.first :]
+    bare = [not line.strip(f'{form.separator} \t"') for line in lines]
+    filled = [bool(line.strip()) for line in lines]  # what the parser makes a row of
+    begins = np.array([False, *bare[:-1]]) & ~np.array(bare)
+    return np.asarray(np.cumsum(begins)[np.array(filled)])
+
+
 def decoded(data: bytes) -> str:
     """Return text whatever wrote it: UTF-8 or UTF-16 with or without a mark, else Latin-1."""
     return data.decode(_encoding(data), errors="replace")
@@ -315,7 +325,8 @@ def _names(above: Sequence[str], header: int, separator: str) -> tuple[list[str]
     for line in above[header + 1 :]:
         cells = [cell.strip() for cell in _split(line, separator)]
         filled = [cell for cell in cells if cell]
-        if filled and all(re.fullmatch(r"[\[(].*[\])]", cell) for cell in filled):
+        bracketed = filled and all(re.fullmatch(r"[\[(].*[\])]", cell) for cell in filled)
+        if bracketed or are_units(cells):
             return names, cells
     return names, []
 

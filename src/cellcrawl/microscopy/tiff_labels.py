@@ -15,7 +15,7 @@ from cellcrawl.microscopy.extras import reader
 from cellcrawl.microscopy.label_images import outlines_of_labels
 from cellcrawl.microscopy.options import Reading
 from cellcrawl.microscopy.outlines import Outlines
-from cellcrawl.microscopy.source import Source
+from cellcrawl.microscopy.source import LeftOut, Source
 from cellcrawl.microscopy.track import Tracks
 
 CTC_TABLES = ("res_track.txt", "man_track.txt")
@@ -30,7 +30,7 @@ def read_label_tiff(path: Path, reading: Reading) -> Outlines:
             series = file.series[0]
             stack, axes = series.asarray(), series.axes
             size, length, interval, time = _scales(file)
-    except (ValueError, OSError, KeyError, IndexError, TypeError) as error:
+    except Exception as error:  # a damaged file shows itself in many ways
         raise InputError(f"{path} cannot be read as a TIFF: {error}") from None
     frames = _as_frames(path, stack, axes)
     notes = []
@@ -70,7 +70,11 @@ def read_cell_tracking_challenge(folder: Path, reading: Reading) -> tuple[Outlin
     out: list[Any] = []
     source = Source(str(folder), "Cell Tracking Challenge folder", {}, "pixel", "", True)
     for path in images:
-        frame = tifffile.imread(path)
+        try:
+            frame = tifffile.imread(path)
+        except Exception as error:  # a damaged file shows itself in many ways
+            out.append(LeftOut(path.name, f"it cannot be read as a TIFF: {error}", 0))
+            continue
         if frame.ndim != 2:
             raise InputError(f"{path} has shape {frame.shape}: only images of a plane are read")
         if not frame.any():

@@ -37,17 +37,22 @@ def _lines(rows: Iterable[Iterable[Any]], delimiter: str = ",") -> str:
 def record_ids(tracks: Tracks) -> list[str]:
     """Return the id of the track of each record."""
     return [
-        name
+        _named(name)
         for name, size in zip(tracks.ids, np.diff(tracks.starts), strict=True)
         for _ in range(int(size))
     ]
 
 
+def _named(name: str) -> str:
+    """Return an id that is not blank: that would be read as no track."""
+    return name or "0"
+
+
 def numbers_of(tracks: Tracks, first: int = 0) -> dict[str, int]:
     """Return a whole number for every id: its own where all are whole numbers."""
-    if all(name.isascii() and name.isdigit() for name in tracks.ids):
-        return {name: int(name) for name in tracks.ids}
-    return {name: number for number, name in enumerate(tracks.ids, start=first)}
+    if all(name.isascii() and name.isdigit() for name in tracks.ids if name):
+        return {name or "0": int(name or 0) for name in tracks.ids}
+    return {name or "0": number for number, name in enumerate(tracks.ids, start=first)}
 
 
 def frames_of(t: np.ndarray) -> tuple[np.ndarray, float]:
@@ -217,9 +222,12 @@ def _trackmate(tracks: Tracks) -> str:
             tracks.x, tracks.y, tracks.t, _frames_or_ranks(tracks).tolist(), strict=True
         )
     ]
+    numbers = numbers_of(tracks)
     links = {
-        str(numbers_of(tracks)[name]): list(range(int(first), int(last)))
-        for name, first, last in zip(tracks.ids, tracks.starts[:-1], tracks.starts[1:], strict=True)
+        str(numbers[name]): list(range(int(first), int(last)))
+        for name, first, last in zip(
+            map(_named, tracks.ids), tracks.starts[:-1], tracks.starts[1:], strict=True
+        )
     }
     return trackmate_model(spots, links, tracks.source.length_units, tracks.source.time_units)
 

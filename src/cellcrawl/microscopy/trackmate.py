@@ -56,7 +56,8 @@ def read_trackmate_tracks(path: Path, reading: Reading) -> Tracks:
 def read_trackmate_outlines(path: Path, reading: Reading) -> Outlines:
     """Read the outlines of a TrackMate model file; see `cellcrawl.read_outlines`.
 
-    Spots of no track, and those of tracks that split or merge, are left out and listed.
+    Spots of no track, and those of tracks that split or merge, are left out and listed. In a file
+    without any track every spot is a cell of its own.
     """
     reading.without_columns(str(path))
     model = _model(path)
@@ -65,7 +66,11 @@ def read_trackmate_outlines(path: Path, reading: Reading) -> Outlines:
             f"{path} holds spots without outlines: use a detector that gives them (mask, label, "
             "thresholding, cellpose, StarDist), or read its tracks"
         )
-    codes, ids, left_out, notes = _linked(model, path)
+    if any(model.edges.values()):
+        codes, ids, left_out, notes = _linked(model, path)
+    else:  # a segmentation that was not linked
+        codes, ids = np.arange(len(model.t)), [f"spot {spot}" for spot in model.spots]
+        left_out, notes = [], ["the spots are not linked: each outline is a cell of its own"]
     t, units = _times(model, reading)
     source = Source(
         str(path), "TrackMate XML with outlines", {}, model.length_units, units, True, tuple(notes)
@@ -143,9 +148,11 @@ def _model(path: Path) -> Model:
             ends = (element.get("SPOT_SOURCE_ID"), element.get("SPOT_TARGET_ID"))
             model.edges[track].append((int(ends[0] or -1), int(ends[1] or -1)))
         elif element.tag == "TrackID":
-            model.kept = [*(model.kept or []), element.get("TRACK_ID", "")]
-        elif element.tag == "FilteredTracks":
-            model.kept = model.kept or []
+            if model.kept is None:
+                model.kept = []
+            model.kept.append(element.get("TRACK_ID", ""))
+        elif element.tag == "FilteredTracks" and model.kept is None:
+            model.kept = []
         elif element.tag == "ImageData":
             model.frame_interval = float(element.get("timeinterval") or 0.0)
         elif element.tag in ("SpotsInFrame", "Track"):
@@ -180,6 +187,7 @@ def _add_spot(model: Model, element: ElementTree.Element, path: Path) -> None:
 def _linked(model: Model, path: Path) -> tuple[np.ndarray, list[str], list[LeftOut], list[str]]:
     """Return the track of each spot, -1 for none, by the edges between spots."""
     codes = np.full(len(model.t), -1, np.int64)
+    frames = np.array(model.frame)
     ids: list[str] = []
     left_out: list[LeftOut] = []
     notes: list[str] = []
@@ -201,7 +209,7 @@ def _linked(model: Model, path: Path) -> tuple[np.ndarray, list[str], list[LeftO
             gone |= set(ends.ravel().tolist())
             continue
         ends = np.where(
-            (np.array(model.frame)[ends[:, 0]] > np.array(model.frame)[ends[:, 1]])[:, None],
+            (frames[ends[:, 0]] > frames[ends[:, 1]])[:, None],
             ends[:, ::-1],
             ends,
         )

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ElementTree
 from itertools import pairwise
 from typing import Any
+from xml.sax.saxutils import quoteattr
 
 
 def shown(value: float) -> str:
@@ -26,41 +26,41 @@ def trackmate_model(
     length, time : str
         Units.
     """
-    root = ElementTree.Element("TrackMate", version="7.11.1")
-    units = {"spatialunits": length or "pixel", "timeunits": time or "frame"}
-    model = ElementTree.SubElement(root, "Model", units)
-    every = ElementTree.SubElement(model, "AllSpots", nspots=str(len(spots)))
     by_frame: dict[int, list[int]] = {}
     for place, spot in enumerate(spots):
         by_frame.setdefault(int(spot["frame"]), []).append(place)
+    lines = [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        '<TrackMate version="7.11.1">',
+        f"  <Model spatialunits={quoteattr(length or 'pixel')} "
+        f"timeunits={quoteattr(time or 'frame')}>",
+        f'    <AllSpots nspots="{len(spots)}">',
+    ]
     for frame in sorted(by_frame):
-        inside = ElementTree.SubElement(every, "SpotsInFrame", frame=str(frame))
-        for place in by_frame[frame]:
-            spot = spots[place]
-            told = {
-                "ID": str(place),
-                "name": f"ID{place}",
-                "QUALITY": "1.0",
-                "POSITION_T": shown(spot["t"]),
-                "FRAME": str(frame),
-                "VISIBILITY": "1",
-                "RADIUS": shown(spot.get("radius", 1.0)),
-                "POSITION_X": shown(spot["x"]),
-                "POSITION_Y": shown(spot["y"]),
-                "POSITION_Z": "0.0",
-            }
-            if spot["text"]:
-                told["ROI_N_POINTS"] = str(len(spot["text"].split()) // 2)
-            ElementTree.SubElement(inside, "Spot", told).text = spot["text"] or None
-    tracks = ElementTree.SubElement(model, "AllTracks")
-    kept = ElementTree.SubElement(model, "FilteredTracks")
+        lines.append(f'      <SpotsInFrame frame="{frame}">')
+        lines += [_spot(place, spots[place]) for place in by_frame[frame]]
+        lines.append("      </SpotsInFrame>")
+    lines += ["    </AllSpots>", "    <AllTracks>"]
     for name, places in links.items():
-        track = ElementTree.SubElement(tracks, "Track", name=f"Track_{name}", TRACK_ID=name)
-        for one, other in pairwise(places):
-            ElementTree.SubElement(
-                track, "Edge", SPOT_SOURCE_ID=str(one), SPOT_TARGET_ID=str(other)
-            )
-        ElementTree.SubElement(kept, "TrackID", TRACK_ID=name)
-    ElementTree.indent(root)
-    text = ElementTree.tostring(root, encoding="unicode")
-    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
+        lines.append(f"      <Track name={quoteattr(f'Track_{name}')} TRACK_ID={quoteattr(name)}>")
+        lines += [
+            f'        <Edge SPOT_SOURCE_ID="{one}" SPOT_TARGET_ID="{other}" />'
+            for one, other in pairwise(places)
+        ]
+        lines.append("      </Track>")
+    lines += ["    </AllTracks>", "    <FilteredTracks>"]
+    lines += [f"      <TrackID TRACK_ID={quoteattr(name)} />" for name in links]
+    lines += ["    </FilteredTracks>", "  </Model>", "</TrackMate>", ""]
+    return "\n".join(lines)
+
+
+def _spot(place: int, spot: dict[str, Any]) -> str:
+    told = (
+        f'        <Spot ID="{place}" name="ID{place}" QUALITY="1.0" '
+        f'POSITION_T="{shown(spot["t"])}" '
+        f'FRAME="{int(spot["frame"])}" VISIBILITY="1" RADIUS="{shown(spot.get("radius", 1.0))}" '
+        f'POSITION_X="{shown(spot["x"])}" POSITION_Y="{shown(spot["y"])}" POSITION_Z="0.0"'
+    )
+    if not spot["text"]:
+        return told + " />"
+    return f'{told} ROI_N_POINTS="{len(spot["text"].split()) // 2}">{spot["text"]}</Spot>'

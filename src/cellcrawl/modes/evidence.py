@@ -110,7 +110,8 @@ def _correlation(steps: np.ndarray, lag: int, power: float) -> float:
     size = steps.shape[1]
     if size <= lag or power == 0.0:
         return 0.0
-    return float(np.sum(steps[:, lag:] * steps[:, :-lag])) / power * size / (size - lag)
+    product = float(np.sum(steps[:, lag:] * steps[:, :-lag]))
+    return product / power * (size / (size - lag))
 
 
 def _rhythm(steps: np.ndarray, power: float) -> float:

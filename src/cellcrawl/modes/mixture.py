@@ -128,7 +128,7 @@ def _heading(random: np.random.Generator, kind: str, when: np.ndarray, records: 
             )
         case "circle" | "uneven circle":
             turns = _even_in_logarithm(random, 120.0 / 360.0, max(0.5, total / 3.0))
-            angle = 2.0 * math.pi * turns * part
+            angle: np.ndarray = 2.0 * math.pi * turns * part
             if kind == "uneven circle":
                 waves = random.uniform(4.0, 20.0)
                 phase = 2.0 * math.pi * waves * part
@@ -141,12 +141,12 @@ def _heading(random: np.random.Generator, kind: str, when: np.ndarray, records: 
             wave = np.sin(phase)
             if shape == "zigzag":
                 wave = np.tanh(random.uniform(1.0, 8.0) * wave)
-            drift = random.uniform(-0.15, 0.15) * swing * cycles
-            return 0.5 * swing * wave + drift * part
+            arc = random.uniform(-0.15, 0.15) * swing * cycles
+            return 0.5 * swing * wave + arc * part
         case "persistent random walk" | "walk":
             forgets = _even_in_logarithm(random, 0.5, max(1.0, total / 8.0))
-            turns = math.sqrt(2.0 / _FINE / forgets) * random.standard_normal(when.size)
-            return np.cumsum(turns)
+            kicks = math.sqrt(2.0 / _FINE / forgets) * random.standard_normal(when.size)
+            return np.cumsum(kicks)
         case "run and tumble":
             mean = _even_in_logarithm(random, 1.5, max(2.0, total / 8.0))
             ends = np.cumsum(random.exponential(mean, int(4.0 * total / mean) + 20))

@@ -12,8 +12,9 @@ from cellcrawl.errors import InputError
 _PIXELS_ACROSS = 160.0  # pixels along the side of a square of the cell's area
 _LARGEST_GRID = 1500  # pixels along the longer side of the grid
 _SHARPEST = 16.0  # curvature times radius: sharper bends leave the model within a time of 1
-_FIBRE = 0.1  # of the cell's radius: what this disk does not fit into may be a fibre
-_LONGER = 1.08  # how much longer an outline is with fibres than without
+_FIBRES = (0.03, 0.06, 0.12)  # radii of disks that do not fit into fibres, over the cell's
+_REACH = 3.0  # radii of the disk that a fibre reaches further than the rest of the cell
+_ASIDE = 2.37  # pixels of margin
 _LEAST_SMOOTHING = 0.01  # of a polygon that was drawn on a grid
 _RADII = (0.03, 0.05, 0.08, 0.12, 0.17, 0.23, 0.3)  # of the disk, over the cell's radius
 _LEAST_KEPT = 0.8  # share of the area below which it is another shape
@@ -39,16 +40,16 @@ def held_polygon(xy: np.ndarray, nodes: int, smoothing: float) -> tuple[Curve, t
     Notes
     -----
     An outline that is simple, and whose smooth curve is, stays as it is unless it has fibres: bends
-    sharper than a sixteenth of the cell's radius that go when it is opened, and the outline gets a
-    twelfth shorter. Such an outline is opened by disks of growing radius until its bends are wider:
-    what no disk fits into is taken off. One that would lose more than a fifth of its area, such as
-    a figure of eight, is refused.
+    sharper than a sixteenth of the cell's radius, and a part too thin for a small disk that reaches
+    further than a corner would. Such an outline is opened by disks of growing radius until its
+    bends are wider: what no disk fits into is taken off. One that would lose more than a fifth of
+    its area, such as a figure of eight, is refused.
     """
     complaint: InputError | None = None
     whole: Curve | None = None
     try:
         whole = from_polygon(xy, nodes, smoothing)
-        if _sharpest_bend(whole) <= _SHARPEST or not _has_fibres(xy, whole, nodes, smoothing):
+        if _sharpest_bend(whole) <= _SHARPEST or not _has_fibres(xy):
             return whole, ()
     except SelfCrossing as error:
         complaint = error
@@ -81,34 +82,47 @@ def _sharpest_bend(curve: Curve) -> float:
     return float(np.abs(curve.curvature).max()) * math.sqrt(curve.area / math.pi)
 
 
-def _has_fibres(xy: np.ndarray, whole: Curve, nodes: int, smoothing: float) -> bool:
-    body = _opened_polygon(xy, _FIBRE)
-    if body is None:
-        return False
-    try:
-        without = from_polygon(body, nodes, max(smoothing, _LEAST_SMOOTHING))
-    except InputError:
-        return False
-    return bool(whole.length > _LONGER * without.length)
+def _has_fibres(xy: np.ndarray) -> bool:
+    """Whether a part that some disk does not fit into reaches further than a corner would.
+
+    The tip of a corner of angle a lies (1 / sin(a / 2) - 1) radii from the disk that fits into it:
+    three radii are a corner of 29 degrees.
+    """
+    from cellcrawl.microscopy.raster import opened, widened
+
+    mask, _, _ = _drawn(xy)
+    size = math.sqrt(float(mask.sum()) / math.pi)
+    for radius in _FIBRES:
+        body = opened(mask, radius * size)
+        if body.any() and np.any(mask & ~widened(body, _REACH * radius * size)):
+            return True
+    return False
 
 
-def _opened_polygon(xy: np.ndarray, radius: float) -> np.ndarray | None:
-    """Return the largest piece after an opening; None if it is another shape then."""
+def _drawn(xy: np.ndarray) -> tuple[np.ndarray, float, np.ndarray]:
+    """Return the polygon on a grid, the size of a pixel, and where the grid begins."""
     # Only outlines that need it pay for the import of readers and what they lean on.
-    from cellcrawl.microscopy.label_images import pieces
-    from cellcrawl.microscopy.raster import opened, rasterised
+    from cellcrawl.microscopy.raster import rasterised
 
     low, size = xy.min(axis=0), np.ptp(xy, axis=0)
     pixel = max(math.sqrt(_area(xy, low, size)) / _PIXELS_ACROSS, size.max() / _LARGEST_GRID)
     shape = (int(size[1] / pixel) + 5, int(size[0] / pixel) + 5)
-    # Half a pixel aside, so that whole coordinates never lie on the centres of pixels.
-    mask = rasterised((xy - low) / pixel + 2.37, shape)
+    # A third of a pixel aside, so that whole coordinates never lie on the centres of pixels.
+    return rasterised((xy - low) / pixel + _ASIDE, shape), pixel, low
+
+
+def _opened_polygon(xy: np.ndarray, radius: float) -> np.ndarray | None:
+    """Return the largest piece after an opening; None if it is another shape then."""
+    from cellcrawl.microscopy.label_images import pieces
+    from cellcrawl.microscopy.raster import opened
+
+    mask, pixel, low = _drawn(xy)
     whole = int(mask.sum())
-    mask = opened(mask, radius * math.sqrt(whole / math.pi))
-    found = list(pieces(mask.astype(np.uint8)))
+    body = opened(mask, radius * math.sqrt(whole / math.pi))
+    found = list(pieces(body.astype(np.uint8)))
     if not found or found[0].pixels < _LEAST_KEPT * whole:
         return None
-    return np.asarray((found[0].xy - 2.37) * pixel + low)
+    return np.asarray((found[0].xy - _ASIDE) * pixel + low)
 
 
 def _area(xy: np.ndarray, low: np.ndarray, size: np.ndarray) -> float:
