@@ -111,7 +111,7 @@ def _correlation(steps: np.ndarray, lag: int, power: float) -> float:
     if size <= lag or power == 0.0:
         return 0.0
     product = float(np.sum(steps[:, lag:] * steps[:, :-lag]))
-    return product / power * (size / (size - lag))
+    return float(product / power * size / (size - lag))
 
 
 def _rhythm(steps: np.ndarray, power: float) -> float:
