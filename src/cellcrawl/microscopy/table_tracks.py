@@ -1,0 +1,394 @@
+"""Tracks from plain tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from cellcrawl.errors import InputError
+from cellcrawl.microscopy.columns import (
+    Columns,
+    chosen,
+    plain,
+    recognise,
+    side_by_side,
+    time_column,
+)
+from cellcrawl.microscopy.grouping import rows_told, tracks_of_records
+from cellcrawl.microscopy.options import Reading
+from cellcrawl.microscopy.source import LeftOut, Source
+from cellcrawl.microscopy.tables import (
+    Cells,
+    Form,
+    blocks_of,
+    clock_seconds,
+    form_of,
+    read_cells,
+)
+from cellcrawl.microscopy.track import Tracks
+
+_JUMP = 3.0  # times the longest step within a block at which two blocks are two cells
+
+
+def read_table_tracks(path: Path, reading: Reading) -> Tracks:
+    """Read the tracks of a plain table; see `cellcrawl.read_tracks`."""
+    form = form_of(path)
+    if reading.columns is None and recognise(form.names, form.units) is None:
+        cells_beside = side_by_side(form.names)
+        if cells_beside:
+            return _side_by_side(path, form, cells_beside, reading)
+    columns, program = _columns(form, reading.columns)
+    places = [*columns.places.values(), *columns.groups]
+    if "id" not in columns.places:
+        places = list(range(form.width))  # to be sure that none of them is an id
+    cells = read_cells(form, places)
+    notes: list[str] = []
+    out = [LeftOut(f"row {row}", "it has another number of cells", 1) for row in cells.torn]
+    codes, ids = _ids(cells, columns)
+    if len(ids) == 1 and ids[0] == "" and reading.columns is None:
+        codes, ids = _blocks(form, codes)
+        if len(ids) > 1:
+            notes.append("no column of ids: blank lines keep the tracks apart")
+    line = form.first + 1
+    numbers = {}
+    for role in ("x", "y", "t", "frame"):
+        if role not in columns.places:
+            continue
+        place = columns.places[role]
+        values, bad = cells.numbers(place)
+        if role == "t" and bad.size > 0.5 * values.size:
+            clock = clock_seconds(cells.text(place))
+            if clock is not None:
+                values, bad = clock, np.empty(0, np.int64)
+                columns = replace(columns, time_units="s")
+                notes.append(f"times of {columns.told()['t']} read as clock times, in seconds")
+        if bad.size:
+            if bad.size > 0.5 * values.size:
+                cell = cells.text(place)[int(bad[0])].as_py()
+                raise InputError(
+                    f"{path}, {rows_told(bad, line)}: {role} = {cell!r} is not a number"
+                    + (" (seconds, frames, HH:MM:SS)" if role == "t" else "")
+                )
+            reason = f"{role} is not a number"
+            out.append(LeftOut(rows_told(bad, line), reason, bad.size))
+        numbers[role] = values
+    t, role, units = _times(path, numbers, columns, reading, codes, len(ids))
+    if "id" not in columns.places and len(ids) == 1:
+        _no_hidden_id(form, cells, columns, t, numbers, given=reading.columns is not None)
+    if "z" in columns.places:
+        depth = cells.numbers(columns.places["z"])[0]
+        if np.nanmax(depth, initial=-np.inf) > np.nanmin(depth, initial=np.inf):
+            notes.append(f"{columns.told()['z']} is left aside: tracks are of the plane")
+    told = columns.told()
+    told = {name: told[name] for name in ("id", "group", role, "x", "y") if name in told}
+    name, y_down, length = program
+    source = Source(
+        str(path),
+        f"{name} ({form})",
+        told,
+        columns.length_units or length,
+        units,
+        y_down,
+        tuple(notes),
+    )
+    scaled, x, y = reading.scaled(source, numbers["x"], numbers["y"])
+    parents = _parents(cells, columns, ids, codes)
+    return tracks_of_records(codes, ids, t, x, y, scaled, out, parents)
+
+
+def _side_by_side(
+    path: Path, form: Form, beside: list[tuple[str, int, int]], reading: Reading
+) -> Tracks:
+    """Read a table with a row a frame and two columns a cell; blanks where a cell is not seen."""
+    place, role, units = time_column(form.names)
+    places = [*(p for _, *pair in beside for p in pair), *([] if place is None else [place])]
+    cells = read_cells(form, places)
+    numbers: dict[str, np.ndarray] = {}
+    out = [LeftOut(f"row {row}", "it has another number of cells", 1) for row in cells.torn]
+    rows = len(cells.columns[places[0]])
+    x, y = np.empty((2, len(beside), rows))
+    for number, (name, *pair) in enumerate(beside):
+        for values, at in zip((x, y), pair, strict=True):
+            values[number], bad = cells.numbers(at)
+            if bad.size:
+                told = f"{name}, {rows_told(bad, form.first + 1)}"
+                out.append(LeftOut(told, "no number", bad.size))
+    if place is not None:
+        numbers[role] = cells.numbers(place)[0]
+    columns = Columns({"x": beside[0][1], "y": beside[0][2]}, time_units=units, names=form.names)
+    t, role, units = _times(path, numbers, columns, reading, np.zeros(rows, np.int64), 1)
+    taken = {role: "rows" if place is None else form.names[place]}
+    note = f"{len(beside)} cells side by side, two columns each"
+    source = Source(str(path), f"plain table ({form})", taken, "", units, False, (note,))
+    source, x, y = reading.scaled(source, x, y)
+    codes = np.repeat(np.arange(len(beside)), rows)
+    ids = [name for name, _, _ in beside]
+    return tracks_of_records(codes, ids, np.tile(t, len(beside)), x.ravel(), y.ravel(), source, out)
+
+
+def _columns(
+    form: Form, wanted: str | Mapping[str, str | int] | None
+) -> tuple[Columns, tuple[str, bool, str]]:
+    if wanted is not None:
+        columns = chosen(wanted, form.names if any(form.names) else (), form.width)
+        return columns, _program(form, columns)
+    if any(form.names):
+        found = recognise(form.names, form.units)
+        if found is None:
+            _say_what_else_it_is(form)
+            listed = ", ".join(name for name in form.names if name)
+            raise InputError(
+                f"{form.path}: no columns of positions among {listed[:120]}: "
+                "name them with --columns, as in id=A,t=B,x=C,y=D"
+            )
+        program = _program(form, found)
+        if program[0].startswith("CellProfiler") and "id" not in found.places:
+            raise InputError(
+                f"{form.path} has no TrackObjects_Label: its ObjectNumber counts the objects of "
+                "each image anew and links none; run TrackObjects, or name an id with --columns"
+            )
+        return found, program
+    return _by_content(form)
+
+
+def _program(form: Form, columns: Columns) -> tuple[str, bool, str]:
+    """Return which program wrote the table, whether its y points down, and its unit of length."""
+    names = {plain(name) for name in form.names}
+    across = plain(form.names[columns.places["x"]])
+    if {"trackid", "positionx", "quality"} <= names or {"trackid", "quality", "spotid"} <= names:
+        return "TrackMate spots table", True, ""
+    if {"id", "t", "parent", "root", "generation"} <= names:
+        return "btrack table", True, "pixel"
+    if any("trackobjects" in name for name in names) or across.endswith("locationcenterx"):
+        return "CellProfiler table", True, "pixel"
+    if {"trackn", "slicen"} <= names:
+        return "ImageJ Manual Tracking table", True, "pixel"
+    if {"nr", "tid", "pid"} <= names:
+        return "MTrackJ table", True, ""
+    if "particle" in names and "frame" in names:
+        return "trackpy table", True, "pixel"
+    if {"trackid", "t", "y", "x"} <= names and len(form.names) <= 8:
+        order = [plain(name) for name in form.names]
+        if order.index("y") < order.index("x"):
+            kind = "ultrack" if "parenttrackid" in names else "napari"
+            return f"{kind} tracks table", True, "pixel"
+    if {"positionx", "trackid", "collection"} <= names:
+        return "Imaris table", False, ""
+    return "plain table", False, ""
+
+
+def _say_what_else_it_is(form: Form) -> None:
+    names = {plain(name) for name in form.names}
+    if {"spotsourceid", "spottargetid"} <= names:
+        what = "TrackMate's table of edges"
+    elif {"trackduration", "trackstart"} & names:
+        what = "TrackMate's table of whole tracks"
+    elif {"l", "b", "e", "p"} <= names:
+        what = "a table of whole tracks"
+    else:
+        return
+    raise InputError(f"{form.path} is {what}: it holds no positions; give the table of spots")
+
+
+def _by_content(form: Form) -> tuple[Columns, tuple[str, bool, str]]:
+    """Tell the columns of a table without names: an id whose records rise in time, x and y."""
+    cells = read_cells(form, range(form.width))
+    values = [cells.numbers(place)[0] for place in range(form.width)]
+    names = tuple(f"column {place + 1}" for place in range(form.width))
+    ask = (
+        f"{form.path} names no columns: say which is which with --columns, "
+        "as in id,t,x,y in the order of the file"
+    )
+    for identity in range(form.width):
+        rising = [
+            place
+            for place in range(form.width)
+            if place != identity and _rises_within(values[identity], values[place])
+        ]
+        if not _is_whole(values[identity]) or not rising or not _in_blocks(values[identity]):
+            continue
+        # Frame and time may both be there: each tells the other. A position may rise too.
+        first = rising[0]
+        times = [p for p in rising if _same_clock(values[first], values[p])]
+        rest = [p for p in range(form.width) if p not in (identity, *times)]
+        if len(rest) in (2, 3) and max(identity, *times) < rest[0]:
+            rising = times
+            places = {"id": identity, "t": rising[-1], "x": rest[0], "y": rest[1]}
+            if len(rest) == 3:
+                places["z"] = rest[2]
+            kind = "celltrackR table without names" if len(rising) == 2 else "table without names"
+            return Columns(places, names=names), (kind, False, "")
+    raise InputError(ask)
+
+
+def _is_whole(values: np.ndarray) -> bool:
+    return bool(np.all(np.isfinite(values)) and np.all(values == np.round(values)))
+
+
+def _in_blocks(values: np.ndarray) -> bool:
+    """Whether equal values stand together: as many blocks as values."""
+    return bool(1 + np.count_nonzero(np.diff(values)) == np.unique(values).size < values.size)
+
+
+def _same_clock(first: np.ndarray, other: np.ndarray) -> bool:
+    """Whether one column is the other in other units, over all records."""
+    low, high = int(np.argmin(first)), int(np.argmax(first))
+    pace = (other[high] - other[low]) / (first[high] - first[low])
+    return bool(np.allclose(other, other[low] + pace * (first - first[low]), rtol=1e-9, atol=1e-9))
+
+
+def _rises_within(identity: np.ndarray, values: np.ndarray) -> bool:
+    """Whether values rise within each block of an id, and by the same steps mostly."""
+    steps = np.diff(values)[np.diff(identity) == 0.0]
+    if not steps.size or not np.all(steps > 0.0):
+        return False
+    return bool(np.mean(np.isclose(steps, np.median(steps))) > 0.5)
+
+
+def _ids(cells: Cells, columns: Columns) -> tuple[np.ndarray, list[str]]:
+    """Return the code of each row's track, -1 for none, and the names; groups keep ids apart."""
+    rows = len(next(iter(cells.columns.values())))
+    parts = [place for place in columns.groups if _varies(cells.text(place))]
+    if "id" in columns.places:
+        parts.append(columns.places["id"])
+    if not parts:
+        return np.zeros(rows, np.int64), [""]
+    codes, names = np.zeros(rows, np.int64), [""]
+    for place in parts:
+        encoded = pc.dictionary_encode(_plain_ids(cells.text(place)))
+        own = encoded.indices.fill_null(-1).to_numpy(zero_copy_only=False).astype(np.int64)
+        words = [str(word) for word in encoded.dictionary.to_pylist()]
+        if len(names) == 1:
+            codes, names = own, words
+            continue
+        both = np.where((codes < 0) | (own < 0), -1, codes * len(words) + own)
+        pairs, first, inverse = np.unique(both, return_index=True, return_inverse=True)
+        order = np.argsort(first)
+        order = order[pairs[order] >= 0]
+        rank = np.full(pairs.size, -1)
+        rank[order] = np.arange(order.size)
+        codes = rank[inverse]
+        names = [
+            f"{names[int(pair) // len(words)]}/{words[int(pair) % len(words)]}"
+            for pair in pairs[order]
+        ]
+    return codes, names
+
+
+def _blocks(form: Form, codes: np.ndarray) -> tuple[np.ndarray, list[str]]:
+    """Return tracks that stand in blocks with blank lines between them."""
+    blocks = blocks_of(form)
+    if blocks.size != codes.size or blocks[-1] == 0:
+        return codes, [""]
+    numbers, blocks = np.unique(blocks, return_inverse=True)
+    return blocks.astype(np.int64), [str(int(number) + 1) for number in numbers]
+
+
+def _plain_ids(column: pa.Array) -> pa.Array:
+    """Whole numbers written as 3.0 become 3, if all of them are; other ids stay as written."""
+    filled = column.drop_null()
+    whole = pc.match_substring_regex(filled, r"^-?\d+[.,]0*$")
+    if len(filled) and pc.all(whole).as_py():
+        return pc.replace_substring_regex(column, r"[.,]0*$", "")
+    return column
+
+
+def _varies(column: pa.Array) -> bool:
+    return len(pc.unique(column.drop_null())) > 1
+
+
+def _times(
+    path: Path,
+    numbers: Mapping[str, np.ndarray],
+    columns: Columns,
+    reading: Reading,
+    codes: np.ndarray,
+    tracks: int,
+) -> tuple[np.ndarray, str, str]:
+    """Return the times, the role of the column they are from, and their unit."""
+    time, frame = numbers.get("t"), numbers.get("frame")
+    if time is not None and frame is not None:
+        finite = time[np.isfinite(time)]
+        if not finite.size or (
+            finite.min() == finite.max() and np.nanmax(frame) > np.nanmin(frame)
+        ):
+            time = None  # a time nobody filled in
+    if reading.frame_interval is not None:
+        counted = frame if frame is not None else time
+        if counted is None:
+            if tracks > 1:
+                raise InputError(f"{path} has no column of times or frames: name it with --columns")
+            counted = np.arange(codes.size, dtype=float)
+        filled = counted[np.isfinite(counted)]
+        if np.any(filled != np.round(filled)):
+            raise InputError(
+                f"{path} has times of its own, not frames: leave the frame interval out"
+            )
+        role = "frame" if frame is not None else "t"
+        return reading.frame_interval * counted, role, reading.time_units
+    if time is not None:
+        return time, "t", columns.time_units
+    if frame is not None:
+        return frame, "frame", "frame"
+    raise InputError(
+        f"{path} has no column of times or frames: name it with --columns, as in t=NAME, "
+        "or give --frame-interval for rows in the order of time"
+    )
+
+
+def _no_hidden_id(
+    form: Form,
+    cells: Cells,
+    columns: Columns,
+    t: np.ndarray,
+    numbers: Mapping[str, np.ndarray],
+    *,
+    given: bool,
+) -> None:
+    """Refuse to make one track of several cells: a column that looks like an id must be named."""
+    if given:
+        return
+    for place in range(form.width):
+        if place in columns.places.values() or place in columns.groups:
+            continue
+        encoded = pc.dictionary_encode(cells.text(place))
+        words = len(encoded.dictionary)
+        blocks = encoded.indices.fill_null(-1).to_numpy(zero_copy_only=False)
+        changes = np.flatnonzero(np.diff(blocks))
+        if not 2 <= words <= len(blocks) // 2 or changes.size + 1 != words:
+            continue
+        if _apart(t, numbers["x"], numbers["y"], changes):
+            name = form.names[place] or f"column {place + 1}"
+            raise InputError(
+                f"{form.path}: column {name!r} seems to tell {words} cells apart: "
+                f"say --columns id={name},... or id=none,... for one cell"
+            )
+
+
+def _apart(t: np.ndarray, x: np.ndarray, y: np.ndarray, changes: np.ndarray) -> bool:
+    """Whether time falls or the position jumps wherever the block changes."""
+    step = np.hypot(np.diff(x), np.diff(y))
+    within = np.delete(step, changes)
+    if not np.isfinite(within).any():
+        return False
+    jump = step[changes] > _JUMP * np.nanmax(within)
+    return bool(np.all(jump | (np.diff(t)[changes] <= 0.0)))
+
+
+def _parents(cells: Cells, columns: Columns, ids: list[str], codes: np.ndarray) -> dict[str, str]:
+    if "parent" not in columns.places or columns.groups or len(ids) < 2:
+        return {}
+    parents = _plain_ids(cells.text(columns.places["parent"])).to_pylist()
+    known, found = set(ids), {}
+    _, first = np.unique(codes, return_index=True)
+    for row in first:
+        own = ids[codes[row]] if codes[row] >= 0 else ""
+        parent = parents[row]
+        if own and parent in known and parent != own:
+            found[own] = parent
+    return found
