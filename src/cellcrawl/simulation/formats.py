@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import json
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, Final, Protocol
@@ -10,15 +12,29 @@ import h5netcdf
 import numpy as np
 import xarray as xr
 
-_CHECKPOINT = "checkpoint"
-_CHUNK_BYTES = 1_000_000
+from cellcrawl.data import FIELDS, SCHEMA_VERSION
+from cellcrawl.errors import StorageError
+from cellcrawl.simulation.checksums import Layout, damaged, digest
+from cellcrawl.simulation.lazy import open_lazily
+
+CHECKPOINT: Final = "checkpoint"
+OWN: Final = ("time", *FIELDS)
+_SEAL: Final = "seal"
+_CHUNK_BYTES: Final = 1_000_000
+# Bounds of HDF5's own format under which all that describes the data has checksums of HDF5's.
+_HDF5: Final = ("v110", "v110")
 
 
 class Format(Protocol):
-    """A way to store a run."""
+    """A way to store a run.
+
+    The group ``checkpoint`` holds the state to go on from, and a digest of that state, of the run's
+    attributes and of what variables there are. A copy made by xarray has no such group: it opens,
+    and cannot be resumed.
+    """
 
     def open(self, path: Path) -> xr.Dataset:
-        """Open lazily."""
+        """Open lazily, once all but the records is seen to be as it was written."""
         ...
 
     def write(
@@ -28,12 +44,20 @@ class Format(Protocol):
         slices: Iterable[xr.Dataset],
         attributes: Mapping[str, Any],
         checkpoint: Mapping[str, np.ndarray],
+        extras: xr.Dataset,
     ) -> None:
-        """Write slices along time, one after another; ``records`` in all."""
+        """Write slices along time, one after another; ``records`` in all.
+
+        ``extras`` are variables and attributes of the user's own.
+        """
         ...
 
     def read_checkpoint(self, path: Path) -> dict[str, np.ndarray]:
-        """Read the state to go on from."""
+        """Read the state to go on from; raises KeyError if there is none."""
+        ...
+
+    def is_run(self, path: Path) -> bool:
+        """Whether what is there was written as a run."""
         ...
 
 
@@ -41,7 +65,11 @@ class NetCDF:
     """NetCDF-4 by h5netcdf."""
 
     def open(self, path: Path) -> xr.Dataset:
-        return xr.open_dataset(path, engine="h5netcdf", decode_times=False)
+        with h5netcdf.File(path, "r") as file:
+            if CHECKPOINT in file.groups:
+                seal = file.groups[CHECKPOINT].attrs.get(_SEAL)
+                _check_seal(path, seal, dict(file.attrs), _layout(file), _arrays(file))
+        return open_lazily(path, "h5netcdf")
 
     def write(
         self,
@@ -50,36 +78,51 @@ class NetCDF:
         slices: Iterable[xr.Dataset],
         attributes: Mapping[str, Any],
         checkpoint: Mapping[str, np.ndarray],
+        extras: xr.Dataset,
     ) -> None:
-        with h5netcdf.File(path, "w") as file:
+        with h5netcdf.File(path, "w", libver=_HDF5) as file:
             written = 0
             for part in slices:
                 if written == 0:
                     _create(file, part, records)
                 count = part.sizes["time"]
-                for name, variable in part.variables.items():
-                    file.variables[name][written : written + count] = variable.values
+                for name in OWN:
+                    file.variables[name][written : written + count] = part[name].values
                 written += count
             file.attrs.update(_netcdf_attributes(attributes))
-            group = file.create_group(_CHECKPOINT)
+            group = file.create_group(CHECKPOINT)
             for name, array in checkpoint.items():
                 dims = tuple(f"{name}_{axis}" for axis in range(array.ndim))
                 group.dimensions.update(zip(dims, array.shape, strict=True))
                 group.create_variable(name, dims, data=array)
+            group.attrs[_SEAL] = np.bytes_(_seal(attributes, _layout(file), checkpoint).encode())
+        if extras.variables or extras.attrs:
+            extras.to_netcdf(path, mode="a", engine="h5netcdf")
 
     def read_checkpoint(self, path: Path) -> dict[str, np.ndarray]:
-        with xr.open_dataset(path, engine="h5netcdf", group=_CHECKPOINT) as saved:
-            return {str(name): np.array(array.values) for name, array in saved.items()}
+        with h5netcdf.File(path, "r") as file:
+            return _arrays(file)
+
+    def is_run(self, path: Path) -> bool:
+        try:
+            with h5netcdf.File(path, "r") as file:
+                return {"schema_version", "cellcrawl_version"} <= set(file.attrs)
+        except Exception:  # HDF5 has many; whatever it is, it is no run that can be read
+            return False
 
 
 class Zarr:
     """A Zarr store, by the zarr package."""
 
     def open(self, path: Path) -> xr.Dataset:
-        dataset: xr.Dataset = xr.open_zarr(
-            path, consolidated=False, decode_times=False, chunks=None
-        )
-        return dataset
+        if (path / CHECKPOINT).is_dir():
+            attributes = _described(path).get("attributes", {})
+            seal = _described(path / CHECKPOINT).get("attributes", {}).get(_SEAL)
+            layout = self._layout(path)
+            _check_seal(path, seal, attributes, layout, self.read_checkpoint(path))
+            if seal is not None:
+                self._check_chunks(path)
+        return open_lazily(path, "zarr", consolidated=False)
 
     def write(
         self,
@@ -88,20 +131,63 @@ class Zarr:
         slices: Iterable[xr.Dataset],
         attributes: Mapping[str, Any],
         checkpoint: Mapping[str, np.ndarray],
+        extras: xr.Dataset,
     ) -> None:
+        from zarr.codecs import BloscCodec, Crc32cCodec
+
+        squeezed = BloscCodec(cname="zstd", clevel=1, shuffle="shuffle", typesize=8)
         for number, part in enumerate(slices):
-            part.attrs = dict(attributes)
-            for variable in part.variables.values():
-                variable.encoding = {} if number else {"chunks": _chunks(variable, records)}
+            own = part[list(FIELDS)]
+            own.attrs = dict(attributes)
+            for variable in own.variables.values():
+                variable.encoding = {}
+                if number == 0:
+                    variable.encoding = {
+                        "chunks": _chunks(variable, records),
+                        "compressors": (squeezed, Crc32cCodec()),
+                    }
             where: dict[str, Any] = {"append_dim": "time"} if number else {"mode": "w"}
-            part.to_zarr(path, consolidated=False, **where)
-        _checkpoint_dataset(checkpoint).to_zarr(
-            path, group=_CHECKPOINT, mode="a", consolidated=False
-        )
+            # Chunks of nothing but zeros are written too: a chunk that is not there is missing.
+            own.to_zarr(path, consolidated=False, write_empty_chunks=True, **where)
+        if extras.variables or extras.attrs:
+            extras = extras.assign_attrs(attributes)  # xarray replaces them all
+            extras.to_zarr(path, mode="a", consolidated=False)
+        state = _checkpoint_dataset(checkpoint)
+        state.attrs = {_SEAL: _seal(attributes, self._layout(path), checkpoint)}
+        state.to_zarr(path, group=CHECKPOINT, mode="a", consolidated=False)
 
     def read_checkpoint(self, path: Path) -> dict[str, np.ndarray]:
-        with xr.open_zarr(path, group=_CHECKPOINT, consolidated=False, chunks=None) as saved:
+        if not (path / CHECKPOINT).is_dir():
+            raise KeyError(CHECKPOINT)
+        with xr.open_zarr(path, group=CHECKPOINT, consolidated=False, chunks=None) as saved:
             return {str(name): np.array(array.values) for name, array in saved.items()}
+
+    def is_run(self, path: Path) -> bool:
+        with contextlib.suppress(OSError, ValueError, AttributeError, TypeError):
+            return {"schema_version", "cellcrawl_version"} <= set(_described(path)["attributes"])
+        return False
+
+    def _layout(self, path: Path) -> Layout:
+        """All that is said of our arrays, chunks and codecs too."""
+        return {
+            name: (
+                tuple(found.get("dimension_names") or ()),
+                tuple(found.get("shape") or ()),
+                {"all": json.dumps(found, sort_keys=True)},
+            )
+            for name in OWN
+            if (path / name).is_dir()
+            for found in [_described(path / name)]
+        }
+
+    def _check_chunks(self, path: Path) -> None:
+        import zarr
+
+        group = zarr.open_group(path, mode="r")
+        for name in OWN:
+            array = group[name]
+            if array.nchunks_initialized != array.nchunks:
+                raise damaged(path, f"files of {name!r} are missing")
 
 
 NETCDF: Final = NetCDF()
@@ -113,11 +199,66 @@ def by_suffix(path: Path) -> Format:
     return BY_SUFFIX[path.suffix]
 
 
+def _seal(
+    attributes: Mapping[str, Any], layout: Layout, checkpoint: Mapping[str, np.ndarray]
+) -> str:
+    names = sorted(attributes)
+    return json.dumps({"attributes": names, "digest": digest(attributes, layout, checkpoint)})
+
+
+def _check_seal(
+    path: Path,
+    seal: Any,
+    attributes: Mapping[str, Any],
+    layout: Layout,
+    checkpoint: Mapping[str, np.ndarray],
+) -> None:
+    """Refuse a file that is not as it was written; what the user has added does not count."""
+    if seal is None and int(attributes.get("schema_version", 1)) < SCHEMA_VERSION:
+        return  # written by 0.1.0
+    try:
+        found = json.loads(seal)
+        own = {name: attributes[name] for name in found["attributes"]}
+        held = found["digest"] == digest(own, layout, checkpoint)
+    except (KeyError, TypeError, ValueError):
+        held = False
+    if not held:
+        raise damaged(
+            path, "its attributes, variables or saved state were changed since it was written"
+        )
+
+
+def _layout(file: h5netcdf.File) -> Layout:
+    return {
+        name: (
+            tuple(variable.dimensions),
+            tuple(variable.shape),
+            {key: str(variable.attrs.get(key)) for key in ("long_name", "units")},
+        )
+        for name in OWN
+        if name in file.variables
+        for variable in [file.variables[name]]
+    }
+
+
+def _arrays(file: h5netcdf.File) -> dict[str, np.ndarray]:
+    group = file.groups[CHECKPOINT]
+    return {name: np.asarray(variable[...]) for name, variable in group.variables.items()}
+
+
+def _described(path: Path) -> dict[str, Any]:
+    found = json.loads((path / "zarr.json").read_text("utf-8"))
+    if not isinstance(found, dict):
+        raise StorageError(f"cannot read {path}: its zarr.json is no table")
+    return found
+
+
 def _create(file: h5netcdf.File, first: xr.Dataset, total: int) -> None:
     file.dimensions = {"time": total, "node": first.sizes["node"]}
-    for name, variable in first.variables.items():
+    for name in OWN:
+        variable = first[name].variable
         chunks = _chunks(variable, total)
-        created = file.create_variable(name, variable.dims, "f8", chunks=chunks)
+        created = file.create_variable(name, variable.dims, "f8", chunks=chunks, fletcher32=True)
         created.attrs.update(variable.attrs)
 
 
