@@ -8,9 +8,8 @@ from cellcrawl.data.runs import (
     check_run,
     checked_times,
     edge_field,
-    is_si,
+    is_dimensionless,
     records_with,
-    units_of,
 )
 from cellcrawl.data.schema import (
     EDGE_FIELDS,
@@ -40,7 +39,6 @@ __all__ = [
     "decode_attribute",
     "edge_field",
     "encode_attributes",
-    "is_si",
+    "is_dimensionless",
     "records_with",
-    "units_of",
 ]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -16,6 +17,8 @@ from cellcrawl.validation import shown
 
 TABLES: Final = ("parameters", "schedule", "start", "solver_options", "diagnostics")
 """Attributes that are tables, stored as JSON text."""
+_SHORTEST: Final = 1e-300  # between two records: any time above zero
+_ANY_SEED: Final = -1  # that of a start that is not random
 
 
 def encode_attributes(attributes: Mapping[str, Any]) -> dict[str, Any]:
@@ -80,6 +83,10 @@ def _is_text(value: Any) -> bool:
     return isinstance(value, str)
 
 
+def _is_status(value: Any) -> bool:
+    return _is_text(value) and value in STATUSES
+
+
 def _is_table(value: Any) -> bool:
     try:
         return isinstance(json.loads(value), dict)
@@ -96,18 +103,22 @@ def _whole(value: Any) -> int | None:
     return int(value) if _is_number(value) and int(value) == value else None
 
 
-def _is_above(value: Any, low: float) -> bool:
-    return _is_number(value) and value > low
+def _is_from(low: float, value: Any) -> bool:
+    return _is_number(value) and value >= low
 
 
-_ALLOWED: Final = (
-    ("schema_version", "a whole number from 1 on", lambda v: _whole(v) is not None and v >= 1),
-    ("status", f"one of {', '.join(STATUSES)}", lambda v: _is_text(v) and v in STATUSES),
+def _is_whole_from(low: int, value: Any) -> bool:
+    return _whole(value) is not None and value >= low
+
+
+_ALLOWED: Final[tuple[tuple[str, str, Callable[[Any], bool]], ...]] = (
+    ("schema_version", "a whole number from 1 on", partial(_is_whole_from, 1)),
+    ("status", f"one of {', '.join(STATUSES)}", _is_status),
     ("status_message", "text", _is_text),
-    ("end_time", "a time from 0 on", lambda v: _is_number(v) and v >= 0.0),
-    ("save_every", "a time above 0", lambda v: _is_above(v, 0.0)),
-    ("records_on_grid", "a whole number from 0 on", lambda v: _whole(v) is not None and v >= 0),
-    ("seed", "a whole number", lambda v: _whole(v) is not None),
+    ("end_time", "a time from 0 on", partial(_is_from, 0.0)),
+    ("save_every", "a time above 0", partial(_is_from, _SHORTEST)),
+    ("records_on_grid", "a whole number from 0 on", partial(_is_whole_from, 0)),
+    ("seed", "a whole number", partial(_is_whole_from, _ANY_SEED)),
     ("solver", "the name of a solver", _is_text),
     ("cellcrawl_version", "text", _is_text),
     *((name, "a table as JSON text", _is_table) for name in TABLES),

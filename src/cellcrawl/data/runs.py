@@ -8,12 +8,13 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
-from cellcrawl.data.schema import EDGE_FIELDS, FIELDS, IN_SI, TIME
+from cellcrawl.data.schema import DIMENSIONAL, EDGE_FIELDS, FIELDS, TIME
 from cellcrawl.errors import InputError, nearest_name
 from cellcrawl.validation import real_array
 
 _SLICE_RECORDS: Final = 512  # looked at together: a run on disk need not fit in memory
 _WIDEST_GAP: Final = 2.0  # spacings between neighbouring nodes ...
+_SYSTEMS: Final = ("model", "SI", "micrometres")
 _CLOSURE: Final = 0.02  # ... and of the length: the gap the paper's scheme may leave
 
 
@@ -47,7 +48,7 @@ def records_with(dataset: Any, *names: str, at_least: int = 1) -> xr.Dataset:
             f"this run has {records} records in time: at least {wanted_records} needed"
         )
     checked_times("time", dataset["time"].values)
-    _check_units(dataset, names)
+    _systems(dataset, ("time", *names))
     for name in names:
         _check_finite(dataset[name].variable, name)
     if any(name in EDGE_FIELDS for name in names):
@@ -74,8 +75,8 @@ def checked_times(name: str, values: Any) -> np.ndarray:
     given = np.asarray(values)
     if given.dtype.kind in "mM":
         raise InputError(
-            f"{name} holds dates or durations, not numbers: open the file with cellcrawl.open_run, "
-            "or with decode_times=False"
+            f"{name} holds dates or durations, not numbers: give numbers, or open a run's file "
+            "with cellcrawl.open_run"
         )
     times = real_array(name, given, (None,))
     falls = np.flatnonzero(np.diff(times) <= 0.0)
@@ -88,14 +89,9 @@ def checked_times(name: str, values: Any) -> np.ndarray:
     return times
 
 
-def is_si(dataset: xr.Dataset) -> bool:
-    """Whether a run is in SI, by the units of its time."""
-    return _system(dataset, "time") == "SI" or "scales" in dataset.attrs
-
-
-def units_of(dataset: xr.Dataset, units: str) -> str:
-    """Return what stands for ``units`` of the model in this dataset: they or their SI unit."""
-    return IN_SI.get(units, units) if is_si(dataset) else units
+def is_dimensionless(dataset: xr.Dataset) -> bool:
+    """Whether a run is in the model's units, by what its variables and attributes say."""
+    return "scales" not in dataset.attrs and "model" in _systems(dataset, ("time", *FIELDS))
 
 
 def _check_variable(dataset: xr.Dataset, name: str) -> None:
@@ -117,31 +113,28 @@ def _check_variable(dataset: xr.Dataset, name: str) -> None:
         raise InputError(f"{name!r} holds {variable.dtype}, not numbers: is it a cellcrawl run?")
 
 
-def _system(dataset: xr.Dataset, name: str) -> str | None:
-    """Return "model" or "SI", by a variable's units; None if they do not tell."""
-    model = TIME.units if name == "time" else FIELDS[name].units
-    given = dataset[name].attrs.get("units", "")
-    if not isinstance(given, str) or given not in ("", model, IN_SI.get(model, model)):
-        raise InputError(
-            f"{name!r} is in {given!r}: a run is in {model!r}"
-            + (f", or in {IN_SI[model]!r} as Scales.dataset makes it" if model in IN_SI else "")
-        )
-    if given == "" or model not in IN_SI:
-        return None
-    return "model" if given == model else "SI"
-
-
-def _check_units(dataset: xr.Dataset, names: tuple[str, ...]) -> None:
-    systems = {name: _system(dataset, name) for name in ("time", *names)}
-    told = {name: system for name, system in systems.items() if system is not None}
-    if len(set(told.values())) > 1:
-        first = next(iter(told))
-        other = next(name for name in told if told[name] != told[first])
-        units = dataset[first].attrs["units"], dataset[other].attrs["units"]
-        raise InputError(
-            f"{first!r} is in {units[0]!r} and {other!r} in {units[1]!r}: give a run in the "
-            "model's units, or all of it in SI"
-        )
+def _systems(dataset: xr.Dataset, names: tuple[str, ...]) -> set[str]:
+    """Return the systems of units that all variables there are may be in, or raise `InputError`."""
+    possible, told = set(_SYSTEMS), ""
+    for name in names:
+        if name not in dataset.variables:
+            continue
+        model = TIME.units if name == "time" else FIELDS[name].units
+        given = dataset[name].attrs.get("units", "")
+        labels = dict(zip(_SYSTEMS, (model, *DIMENSIONAL.get(model, (model, model))), strict=True))
+        fitting = {system for system, label in labels.items() if given in (label, "")}
+        if not fitting:
+            known = ", ".join(repr(label) for label in dict.fromkeys(labels.values()))
+            raise InputError(f"{name!r} is in {given!r}: a run has it in {known}")
+        if not possible & fitting:
+            raise InputError(
+                f"{name!r} is in {given!r} but {told}: put all into one system, as "
+                "Scales.dataset does"
+            )
+        if fitting != set(_SYSTEMS):
+            told = told or f"{name!r} is in {given!r}"
+        possible &= fitting
+    return possible
 
 
 def _slices(variable: xr.Variable) -> Iterator[tuple[int, np.ndarray]]:

@@ -38,18 +38,18 @@ EDGE_FIELDS: Final = tuple(name for name, field in FIELDS.items() if "node" in f
 TRACK_FIELDS: Final = tuple(name for name in FIELDS if name not in EDGE_FIELDS)
 """The cell as a whole, one value a record."""
 
-IN_SI: Final[dict[str, str]] = {
-    "R_0": "m",
-    "R_0^2": "m^2",
-    "1/R_0": "1/m",
-    "1/k_off0": "s",
-    "k_off0": "1/s",
-    "R_0 k_off0": "m/s",
-    "rad k_off0": "rad/s",
-    "zeta_0 v_beta": "N/m",
-    "zeta_0 v_beta / 2": "N/m",
+DIMENSIONAL: Final[dict[str, tuple[str, str]]] = {
+    "R_0": ("m", "um"),
+    "R_0^2": ("m^2", "um^2"),
+    "1/R_0": ("1/m", "1/um"),
+    "1/k_off0": ("s", "s"),
+    "k_off0": ("1/s", "1/s"),
+    "R_0 k_off0": ("m/s", "um/s"),
+    "zeta_0 v_beta": ("N/m", "pN/um"),
+    "zeta_0 v_beta / 2": ("N/m", "pN/um"),
 }
-"""The SI unit that `cellcrawl.Scales.dataset` puts in place of each unit of the model."""
+"""What stands in place of each unit of the model in SI (`cellcrawl.Scales.dataset`), and in
+micrometres, in which pictures are drawn."""
 
 STATUSES: Final[dict[str, str]] = {
     "completed": "reached t_end",

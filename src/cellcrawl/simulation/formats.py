@@ -12,7 +12,7 @@ import h5netcdf
 import numpy as np
 import xarray as xr
 
-from cellcrawl.data import FIELDS, SCHEMA_VERSION
+from cellcrawl.data import FIELDS, SCHEMA_VERSION, checked_attributes
 from cellcrawl.errors import StorageError
 from cellcrawl.simulation.checksums import Layout, damaged, digest
 from cellcrawl.simulation.lazy import open_lazily
@@ -185,7 +185,7 @@ class Zarr:
 
         group = zarr.open_group(path, mode="r")
         for name in OWN:
-            array = group[name]
+            array: Any = group[name]
             if array.nchunks_initialized != array.nchunks:
                 raise damaged(path, f"files of {name!r} are missing")
 
@@ -214,8 +214,10 @@ def _check_seal(
     checkpoint: Mapping[str, np.ndarray],
 ) -> None:
     """Refuse a file that is not as it was written; what the user has added does not count."""
-    if seal is None and int(attributes.get("schema_version", 1)) < SCHEMA_VERSION:
-        return  # written by 0.1.0
+    if seal is None:
+        checked_attributes(attributes, path)
+        if attributes["schema_version"] < SCHEMA_VERSION:
+            return  # written by 0.1.0
     try:
         found = json.loads(seal)
         own = {name: attributes[name] for name in found["attributes"]}
@@ -223,9 +225,8 @@ def _check_seal(
     except (KeyError, TypeError, ValueError):
         held = False
     if not held:
-        raise damaged(
-            path, "its attributes, variables or saved state were changed since it was written"
-        )
+        checked_attributes(attributes, path)  # says more, if it is one of these
+        raise damaged(path, "its attributes, variables or state were changed since")
 
 
 def _layout(file: h5netcdf.File) -> Layout:

@@ -48,7 +48,7 @@ class _NamedFile(BackendEntrypoint):
 
     open_dataset_parameters = ("filename_or_obj", "drop_variables", "with_engine", "options")
 
-    def open_dataset(  # type: ignore[override]
+    def open_dataset(
         self,
         filename_or_obj: Any,
         *,

@@ -15,7 +15,7 @@ from cellcrawl.simulation.description import DEFAULT_SOLVER, RunDescription, sol
 from cellcrawl.simulation.events import RESUMABLE
 from cellcrawl.simulation.following import Follower, Kept, same_time
 from cellcrawl.simulation.progress import Progress, make_progress
-from cellcrawl.simulation.recorder import MemoryRecorder, Recorder, StoreRecorder
+from cellcrawl.simulation.recorder import Checkpoint, MemoryRecorder, Recorder, StoreRecorder
 from cellcrawl.simulation.storage import RunStore
 from cellcrawl.solvers import Solver
 from cellcrawl.starts import RandomPerturbation, Start
@@ -192,7 +192,7 @@ def _resume(store: RunStore, until: float, progress: bool) -> xr.Dataset:
         return store.open()
     if until < reached:
         raise InputError(f"{store.path} has reached t = {reached:g} already: t_end must be above")
-    engine = _restored(store, identity, last)
+    engine = _restored(store.checkpoint(), identity, last, store.path)
     store.check_records()
     bar = make_progress(progress, reached, until)
     recorder = StoreRecorder(store, records)
@@ -200,13 +200,14 @@ def _resume(store: RunStore, until: float, progress: bool) -> xr.Dataset:
     return Follower(engine, recorder, identity, every, bar, records, spent).follow(until)
 
 
-def _restored(store: RunStore, identity: dict[str, Any], last: xr.Dataset) -> Solver:
+def _restored(
+    checkpoint: Checkpoint, identity: dict[str, Any], last: xr.Dataset, path: Path
+) -> Solver:
     """Return the solver in the state to go on from, which must be that of the last record."""
     conditions = Conditions(
         Parameters.from_dict(identity["parameters"]), Schedule(identity["schedule"])
     )
     scheme = solver_named(str(identity["solver"]))
-    checkpoint = store.checkpoint()
     try:
         engine = scheme(None, conditions, **identity["solver_options"])
         engine.restore(checkpoint)
@@ -221,7 +222,7 @@ def _restored(store: RunStore, identity: dict[str, Any], last: xr.Dataset) -> So
         same = False
     if not same:
         raise StorageError(
-            f"the state to go on from in {store.path} is not that of its last record: the file was "
+            f"the state to go on from in {path} is not that of its last record: the file was "
             f"edited, or written by another version ({identity['cellcrawl_version']}); start a new "
             "run from its last record with FromRun"
         )

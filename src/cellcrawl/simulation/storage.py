@@ -222,7 +222,8 @@ class RunStore:
         words = [n for n, v in extras.variables.items() if v.dtype.kind in "OUS"]
         padded = extras.drop_vars(words).pad(missing)
         for name in words:
-            padded[name] = extras[name].pad(missing, constant_values="")
+            empty: Any = ""
+            padded[name] = extras[name].pad(missing, constant_values=empty)
         return padded
 
     def open(self) -> xr.Dataset:

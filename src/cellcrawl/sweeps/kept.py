@@ -159,4 +159,4 @@ def _checksum(dataset: xr.Dataset) -> str:
 
 def _is_old(schema: Any) -> bool:
     """Whether a run was written before there were checksums."""
-    return isinstance(schema, (int, np.integer)) and schema < SCHEMA_VERSION
+    return isinstance(schema, (int, np.integer)) and int(schema) < SCHEMA_VERSION

@@ -109,7 +109,7 @@ def _replacing(path: Path) -> Iterator[BinaryIO]:
 
 
 def find_part(path: Path) -> Path | None:
-    """Return the file that was written as ``path``, its checksum in its name; None if there is none.
+    """Return the file written as ``path``, its checksum in its name; None if there is none.
 
     A chunk that was made twice, as after a kill, may have left two that hold the same runs.
     """
