@@ -12,7 +12,7 @@ import click
 from cellcrawl.command_line.options import say
 from cellcrawl.validation import one_of
 
-_KINDS = ("work-precision", "targets", "scaling", "startup", "modes", "sweep")
+_KINDS = ("work-precision", "targets", "scaling", "startup", "modes", "storage", "sweep")
 
 
 @click.command()
@@ -33,6 +33,7 @@ def bench(kind: str, quick: bool, output: Path | None) -> int:
       targets         the solver's targets: accuracy, speed by ratios
       scaling         cost against nodes and against the length of the run
       startup         import, first and second start from the shell
+      storage         size of a stored run, time to write and to read it
       sweep           scheduling, memory of the driver, workers
       modes           how often the classifier is right
 
@@ -113,6 +114,13 @@ def _modes(quick: bool) -> _Result:
     return _Result(data, modes.plot())
 
 
+def _storage(quick: bool) -> _Result:
+    from cellcrawl.bench import storage
+
+    rows = list(_table(storage.Stored, storage.measure(quick)))
+    return _Result({"stored": [row._asdict() for row in rows]}, None)
+
+
 def _sweep(quick: bool) -> _Result:
     from cellcrawl.bench import sweeps
 
@@ -126,6 +134,7 @@ _MEASURE = {
     "targets": _targets,
     "scaling": _scaling,
     "startup": _startup,
+    "storage": _storage,
     "sweep": _sweep,
 }
 

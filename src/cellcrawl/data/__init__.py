@@ -20,6 +20,7 @@ from cellcrawl.data.schema import (
     STATUSES,
     TIME,
     TRACK_FIELDS,
+    VARIABLES,
     Field,
 )
 
@@ -32,6 +33,7 @@ __all__ = [
     "STATUSES",
     "TIME",
     "TRACK_FIELDS",
+    "VARIABLES",
     "Field",
     "check_run",
     "checked_attributes",

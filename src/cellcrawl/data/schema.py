@@ -33,6 +33,8 @@ FIELDS: Final[dict[str, Field]] = {
     "centroid_y": Field(("time",), "centroid of the area, y", "R_0"),
 }
 TIME: Final = Field(("time",), "time", "1/k_off0")
+VARIABLES: Final = ("time", *FIELDS)
+"""All variables of a run."""
 EDGE_FIELDS: Final = tuple(name for name, field in FIELDS.items() if "node" in field.dims)
 """The fields that live on the edge, one value a node."""
 TRACK_FIELDS: Final = tuple(name for name in FIELDS if name not in EDGE_FIELDS)

@@ -15,10 +15,15 @@ from typing import Any, Final
 
 import numpy as np
 
+from cellcrawl.data import SCHEMA_VERSION, checked_attributes
 from cellcrawl.errors import StorageError
 
 _MAGIC: Final = b"cellcrawl block\x01"
 _SUM_BYTES: Final = 4
+CHECKPOINT: Final = "checkpoint"
+"""The group of a file that holds the state to go on from."""
+SEAL: Final = "seal"
+"""The attribute of that group that holds the digest."""
 
 Layout = dict[str, tuple[tuple[str, ...], tuple[int, ...], dict[str, str]]]
 """For each variable of a run: its dimensions, its shape, its attributes."""
@@ -35,6 +40,37 @@ def digest(attributes: Mapping[str, Any], layout: Layout, arrays: Mapping[str, n
         sorted((name, *_array_sum(array)) for name, array in arrays.items()),
     ]
     return hashlib.blake2b(json.dumps(content).encode(), digest_size=16).hexdigest()
+
+
+def seal(
+    attributes: Mapping[str, Any], layout: Layout, checkpoint: Mapping[str, np.ndarray]
+) -> str:
+    """Return the digest of what a file holds besides its records, with what it covers."""
+    names = sorted(attributes)
+    return json.dumps({"attributes": names, "digest": digest(attributes, layout, checkpoint)})
+
+
+def check_seal(
+    path: Path,
+    told: Any,
+    attributes: Mapping[str, Any],
+    layout: Layout,
+    checkpoint: Mapping[str, np.ndarray],
+) -> None:
+    """Refuse a file that is not as it was written; what the user has added does not count."""
+    if told is None:
+        checked_attributes(attributes, path)
+        if attributes["schema_version"] < SCHEMA_VERSION:
+            return  # written by 0.1.0
+    try:
+        found = json.loads(told)
+        own = {name: attributes[name] for name in found["attributes"]}
+        held = found["digest"] == digest(own, layout, checkpoint)
+    except (KeyError, TypeError, ValueError):
+        held = False
+    if not held:
+        checked_attributes(attributes, path)  # says more, if it is one of these
+        raise damaged(path, "its attributes, variables or state were changed since")
 
 
 def sealed(data: bytes) -> bytes:

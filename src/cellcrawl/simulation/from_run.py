@@ -69,8 +69,11 @@ class FromRun:
             )
         count = dataset.sizes["time"]
         record = whole_number("record", self.record, -count, count - 1)
-        one = dataset.isel(time=[record])
-        return records_with(one, *_NEEDED).isel(time=0).load()
+        try:
+            one = records_with(dataset.isel(time=[record]), *_NEEDED)
+        except InputError as error:
+            raise InputError(f"FromRun, of record {record} alone: {error}") from None
+        return one.isel(time=0).load()
 
     def describe(self) -> dict[str, Any]:
         """Return this start as plain values for JSON."""

@@ -12,7 +12,9 @@ import xarray as xr
 from xarray.backends import BackendArray, BackendEntrypoint
 from xarray.core import indexing
 
+from cellcrawl.data import FIELDS, TIME
 from cellcrawl.errors import CellcrawlError, StorageError
+from cellcrawl.simulation.checksums import damaged
 
 
 @contextlib.contextmanager
@@ -77,6 +79,9 @@ class _NamedFile(BackendEntrypoint):
             for name, variable in inner.variables.items()
             if name not in inner.indexes
         }
+        for name, known in {"time": TIME, **FIELDS}.items():
+            if name in inner.variables and inner[name].dims != known.dims:
+                raise damaged(path, f"{name!r} has dimensions {inner[name].dims}")
         coords = {name: named.pop(name) for name in list(named) if name in inner.coords}
         dataset = inner.assign(named).assign_coords(coords)
         dataset.set_close(inner.close)

@@ -21,12 +21,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from cellcrawl.data import checked_attributes
+from cellcrawl.data import VARIABLES, checked_attributes
 from cellcrawl.errors import InputError, MissingExtraError, StorageError
 from cellcrawl.locks import locked
 from cellcrawl.simulation import blocks, formats
 from cellcrawl.simulation.checksums import damaged
-from cellcrawl.simulation.formats import OWN
 from cellcrawl.simulation.lazy import readable
 
 _SLICE_RECORDS = 256
@@ -210,7 +209,7 @@ class RunStore:
         if not any(base.exists() for base in (self.path, self._previous)):
             return xr.Dataset()
         with self._open_base() as base:
-            extras = base.drop_vars([name for name in OWN if name in base.variables]).load()
+            extras = base.drop_vars([name for name in VARIABLES if name in base.variables]).load()
             extras.attrs = {n: v for n, v in base.attrs.items() if n not in attributes}
         for variable in extras.variables.values():
             variable.encoding = {}
@@ -256,7 +255,7 @@ class RunStore:
         if not self._blocks():
             return self._open_base()
         with readable(self.part):
-            parts = [part[list(OWN)] for part in self._slices(self._sources())]
+            parts = [part[list(VARIABLES)] for part in self._slices(self._sources())]
             attributes = _without_first(self._last_header().attributes)
             dataset: xr.Dataset = xr.concat(parts, "time", combine_attrs="drop")
             dataset.attrs = attributes
@@ -287,7 +286,7 @@ class RunStore:
     def check_records(self) -> None:
         """Read all records; raise `StorageError` if one is damaged or not finite."""
         for part in self._slices(self._sources()):
-            for name in OWN:
+            for name in VARIABLES:
                 if not np.isfinite(part[name].values).all():
                     raise damaged(self.path, f"{name!r} holds values that are not finite")
 
@@ -342,7 +341,7 @@ class RunStore:
                 with self._format.open(path) as dataset:
                     for start in range(0, records, _SLICE_RECORDS):
                         part = slice(start, min(start + _SLICE_RECORDS, records))
-                        yield dataset[list(OWN)].isel(time=part).load()
+                        yield dataset[list(VARIABLES)].isel(time=part).load()
 
     def _lost(self, held: int, first: int) -> StorageError:
         return StorageError(
