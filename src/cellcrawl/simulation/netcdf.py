@@ -36,9 +36,10 @@ class NetCDF:
 
     def open(self, path: Path) -> xr.Dataset:
         with h5py.File(path, "r") as file:
+            attributes = _attributes(file)
             if CHECKPOINT in file:
                 told = file[CHECKPOINT].attrs.get(SEAL)
-                check_seal(path, told, _attributes(file), _layout(file), _arrays(file))
+                check_seal(path, told, attributes, _layout(file), _arrays(file))
         return open_lazily(path, "h5netcdf")
 
     def write(

@@ -382,7 +382,8 @@ def open_run(path: str | Path) -> xr.Dataset:
     InputError
         If there is no run at ``path``, or it is none of ours.
     StorageError
-        If the file is damaged or was written by a newer version.
+        If the file is damaged or edited, lacks records, or was written by a newer version. The
+        records of a finished run are checked when they are read.
     """
     store = RunStore(path)
     if not store.exists():

@@ -9,6 +9,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO, Final, Self
 
+import h5py
 import numpy as np
 import xarray as xr
 
@@ -130,11 +131,11 @@ def read_kept(path: Path, key: str) -> xr.Dataset:
     StorageError
         If the file is missing or damaged.
     """
-    with (
-        readable(path),
-        xr.open_dataset(path, engine="h5netcdf", group=key, decode_times=False) as found,
-    ):
-        run = found.load()
+    with readable(path):
+        with h5py.File(path, "r") as file:  # h5netcdf complains twice of what fails here
+            dict(file.attrs)
+        with xr.open_dataset(path, engine="h5netcdf", group=key, decode_times=False) as found:
+            run = found.load()
     told = run.attrs.pop(_CHECKSUM, None)
     old = _is_old(run.attrs.get("schema_version"))
     if told != _checksum(run) and not (told is None and old):
