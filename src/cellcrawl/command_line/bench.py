@@ -5,14 +5,27 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
 from cellcrawl.command_line.options import say
 from cellcrawl.validation import one_of
 
-_KINDS = ("work-precision", "targets", "scaling", "startup", "modes", "storage", "sweep")
+if TYPE_CHECKING:
+    from cellcrawl.bench.references import References
+
+_KINDS = (
+    "work-precision",
+    "targets",
+    "long",
+    "references",
+    "scaling",
+    "startup",
+    "modes",
+    "storage",
+    "sweep",
+)
 
 
 @click.command()
@@ -24,13 +37,21 @@ _KINDS = ("work-precision", "targets", "scaling", "startup", "modes", "storage",
     metavar="DIR",
     help="Also write the results there, as JSON with machine and versions, and a picture.",
 )
-def bench(kind: str, quick: bool, output: Path | None) -> int:
+@click.option(
+    "--references",
+    type=click.Path(path_type=Path, dir_okay=False),
+    metavar="FILE",
+    help="True values that `bench references` recorded; computed anew unless given.",
+)
+def bench(kind: str, quick: bool, output: Path | None, references: Path | None) -> int:
     r"""Measure accuracy and speed on this machine.
 
     \b
     KIND is one of
       work-precision  error against time of every solver (default)
-      targets         the solver's targets: accuracy, speed by ratios
+      targets         the solver's targets at t = 2 and 5: accuracy, speed by ratios
+      long            its targets for long runs: t = 100, 1000 and 10000, minutes of work
+      references      the true values of ten cells, with a check by CVODE
       scaling         cost against nodes and against the length of the run
       startup         import, first and second start from the shell
       storage         size of a stored run, time to write and to read it
@@ -44,12 +65,15 @@ def bench(kind: str, quick: bool, output: Path | None) -> int:
     Examples
       cellcrawl bench --quick
       cellcrawl bench targets --output benchmarks/results
+      cellcrawl bench long --references benchmarks/results/references.json
     """
     from cellcrawl.bench import machine
+    from cellcrawl.bench.references import References
 
     one_of("KIND", kind, _KINDS)
+    known = References(references)
     say(machine.describe(machine.record()))
-    result = _MEASURE[kind](quick)
+    result = _MEASURE[kind](quick, known)
     if output is not None:
         machine.write(output / f"{kind}.json", result.data)
         if result.figure is not None:
@@ -63,11 +87,11 @@ class _Result(NamedTuple):
     figure: Any
 
 
-def _work_precision(quick: bool) -> _Result:
+def _work_precision(quick: bool, known: References) -> _Result:
     from cellcrawl.bench import work_precision as wp
 
     rows: list[wp.Row] = []
-    for row in _table(wp.Row, wp.measure(quick)):
+    for row in _table(wp.Row, wp.measure(quick, known)):
         rows.append(row)
     ratios = []
     for case, t_end in dict.fromkeys((row.case, row.t_end) for row in rows):
@@ -80,14 +104,44 @@ def _work_precision(quick: bool) -> _Result:
     return _Result({"rows": [row._asdict() for row in rows], "ratios": ratios}, wp.plot(rows))
 
 
-def _targets(quick: bool) -> _Result:
+def _targets(quick: bool, known: References) -> _Result:
     from cellcrawl.bench import reach
 
-    rows = list(_table(reach.Target, reach.measure(quick)))
+    rows = list(_table(reach.Target, reach.measure(quick, known)))
     return _Result({"targets": [row._asdict() for row in rows]}, None)
 
 
-def _scaling(quick: bool) -> _Result:
+def _long(quick: bool, known: References) -> _Result:
+    from cellcrawl.bench import long
+    from cellcrawl.bench.reach import Target
+
+    rows = []
+    for row in _table(long.Row, long.errors_by_tolerance(quick, known)):
+        rows.append(row)
+    targets = list(_table(Target, long.measure(quick, known, rows)))
+    amplified = list(_table(long.Amplified, long.amplification(quick)))
+    data = {
+        "targets": [row._asdict() for row in targets],
+        "errors": [row._asdict() for row in rows],
+        "amplified": [row._asdict() for row in amplified],
+    }
+    return _Result(data, None)
+
+
+def _references(quick: bool, known: References) -> _Result:
+    from cellcrawl.bench import references
+
+    made = list(references.measure(quick))
+    list(_table(references.Reference, (row for row, _ in made)))
+    data = {
+        "by": f"adaptive solver, rtol {references.RTOL:g}",
+        "check": f"CVODE BDF+GMRES, {references.CHECK_NODES} nodes, rtol {references.CHECK_RTOL:g}",
+        "references": [recorded for _, recorded in made],
+    }
+    return _Result(data, None)
+
+
+def _scaling(quick: bool, known: References) -> _Result:
     from cellcrawl.bench import scaling
 
     nodes = list(_table(scaling.NodeCost, scaling.cost_of_nodes(quick)))
@@ -96,14 +150,14 @@ def _scaling(quick: bool) -> _Result:
     return _Result(data, scaling.plot(nodes, streams))
 
 
-def _startup(quick: bool) -> _Result:
+def _startup(quick: bool, known: References) -> _Result:
     from cellcrawl.bench import startup
 
     rows = list(_table(startup.Start, startup.measure(quick)))
     return _Result({"starts": [row._asdict() for row in rows]}, None)
 
 
-def _modes(quick: bool) -> _Result:
+def _modes(quick: bool, known: References) -> _Result:
     from cellcrawl.bench import modes
 
     kinds = list(_table(modes.Kind, modes.measure_kinds(quick)))
@@ -114,14 +168,14 @@ def _modes(quick: bool) -> _Result:
     return _Result(data, modes.plot())
 
 
-def _storage(quick: bool) -> _Result:
+def _storage(quick: bool, known: References) -> _Result:
     from cellcrawl.bench import storage
 
     rows = list(_table(storage.Stored, storage.measure(quick)))
     return _Result({"stored": [row._asdict() for row in rows]}, None)
 
 
-def _sweep(quick: bool) -> _Result:
+def _sweep(quick: bool, known: References) -> _Result:
     from cellcrawl.bench import sweeps
 
     rows = list(_table(sweeps.Figure, sweeps.measure(quick)))
@@ -132,6 +186,8 @@ _MEASURE = {
     "modes": _modes,
     "work-precision": _work_precision,
     "targets": _targets,
+    "long": _long,
+    "references": _references,
     "scaling": _scaling,
     "startup": _startup,
     "storage": _storage,

@@ -17,6 +17,7 @@ from cellcrawl.simulation.following import Follower, Kept, same_time
 from cellcrawl.simulation.progress import Progress, make_progress
 from cellcrawl.simulation.recorder import Checkpoint, MemoryRecorder, Recorder, StoreRecorder
 from cellcrawl.simulation.storage import RunStore
+from cellcrawl.simulation.tension_law import KEY, TensionLaw
 from cellcrawl.solvers import Solver
 from cellcrawl.starts import RandomPerturbation, Start
 from cellcrawl.validation import real_number
@@ -131,7 +132,8 @@ def follow(
 ) -> Kept:
     """Follow a solver at its start to the end of the run; return what was recorded."""
     identity = description.identity(engine)
-    follower = Follower(engine, recorder, identity, description.save_every, progress)
+    law = TensionLaw(description.conditions, engine.invariant_tolerance)
+    follower = Follower(engine, law, recorder, identity, description.save_every, progress)
     return follower.follow(description.t_end)
 
 
@@ -192,25 +194,33 @@ def _resume(store: RunStore, until: float, progress: bool) -> xr.Dataset:
         return store.open()
     if until < reached:
         raise InputError(f"{store.path} has reached t = {reached:g} already: t_end must be above")
-    engine = _restored(store.checkpoint(), identity, last, store.path)
+    checkpoint = store.checkpoint()
+    conditions = Conditions(
+        Parameters.from_dict(identity["parameters"]), Schedule(identity["schedule"])
+    )
+    engine, law = _restored(checkpoint, conditions, identity, last, store.path)
     store.check_records()
     bar = make_progress(progress, reached, until)
     recorder = StoreRecorder(store, records)
     every = float(identity["save_every"])
-    return Follower(engine, recorder, identity, every, bar, records, spent).follow(until)
+    return Follower(engine, law, recorder, identity, every, bar, records, spent).follow(until)
 
 
 def _restored(
-    checkpoint: Checkpoint, identity: dict[str, Any], last: xr.Dataset, path: Path
-) -> Solver:
+    checkpoint: Checkpoint,
+    conditions: Conditions,
+    identity: dict[str, Any],
+    last: xr.Dataset,
+    path: Path,
+) -> tuple[Solver, TensionLaw]:
     """Return the solver in the state to go on from, which must be that of the last record."""
-    conditions = Conditions(
-        Parameters.from_dict(identity["parameters"]), Schedule(identity["schedule"])
-    )
     scheme = solver_named(str(identity["solver"]))
     try:
         engine = scheme(None, conditions, **identity["solver_options"])
         engine.restore(checkpoint)
+        law = TensionLaw(conditions, engine.invariant_tolerance)
+        if KEY in checkpoint:  # or the run is older than the law's check, which then begins here
+            law.restore(checkpoint[KEY])
         frame = engine.frame(float(last["time"].item()))
         same = all(
             np.allclose(getattr(frame, name), last[name].values[0], rtol=_SAME, atol=_SAME)
@@ -226,4 +236,4 @@ def _restored(
             f"edited, or written by another version ({identity['cellcrawl_version']}); start a new "
             "run from its last record with FromRun"
         )
-    return engine
+    return engine, law

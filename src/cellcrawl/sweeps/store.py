@@ -70,7 +70,7 @@ class SweepStore:
             schema = int(found["schema"])
             told = found.pop("checksum", None)
             known = {"grid", "digest", "keep", "code", "runs"} <= set(found)
-            whole = known and (_checksum(found) == told if schema > 1 else told is None)
+            whole = known and (checksum(found) == told if schema > 1 else told is None)
             reason = "its content is not what its checksum says"
         except (OSError, ValueError, KeyError, TypeError) as error:
             whole, reason = False, type(error).__name__
@@ -132,7 +132,7 @@ class SweepStore:
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             self.layout.work.mkdir(exist_ok=True)
-            sealed = {**manifest, "checksum": _checksum(manifest)}
+            sealed = {**manifest, "checksum": checksum(manifest)}
             temporary.write_text(json.dumps(sealed, indent=1) + "\n", "utf-8")
             temporary.replace(path)
         except OSError as error:
@@ -232,6 +232,7 @@ def new_name(driver: str) -> str:
     return f"{driver}-{uuid.uuid4().hex[:12]}"
 
 
-def _checksum(manifest: dict[str, Any]) -> str:
+def checksum(manifest: dict[str, Any]) -> str:
+    """Return a hash of what a folder says of itself."""
     content = json.dumps(manifest, sort_keys=True).encode()
     return hashlib.blake2b(content, digest_size=16).hexdigest()
