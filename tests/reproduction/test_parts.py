@@ -92,7 +92,7 @@ def test_two_at_once_in_one_folder_are_refused(tmp_path):
     )
     run = subprocess.run([sys.executable, "-c", hold, str(tmp_path)], check=False)
     assert run.returncode == 7
-    with locked(lock, tmp_path):
+    with locked(tmp_path / ".lock", tmp_path):
         pass  # a process that ended holds nothing
 
 
