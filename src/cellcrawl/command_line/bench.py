@@ -32,6 +32,9 @@ _KINDS = (
 @click.argument("kind", default="work-precision", metavar="[KIND]")
 @click.option("--quick", is_flag=True, help="A part of it, in under two minutes.")
 @click.option(
+    "--calibrate", is_flag=True, help="Of modes: fit the confidence anew first, and store it."
+)
+@click.option(
     "--output",
     type=click.Path(path_type=Path, file_okay=False),
     metavar="DIR",
@@ -43,7 +46,9 @@ _KINDS = (
     metavar="FILE",
     help="True values that `bench references` recorded; computed anew unless given.",
 )
-def bench(kind: str, quick: bool, output: Path | None, references: Path | None) -> int:
+def bench(
+    kind: str, quick: bool, calibrate: bool, output: Path | None, references: Path | None
+) -> int:
     r"""Measure accuracy and speed on this machine.
 
     \b
@@ -56,7 +61,7 @@ def bench(kind: str, quick: bool, output: Path | None, references: Path | None) 
       startup         import, first and second start from the shell
       storage         size of a stored run, time to write and to read it
       sweep           scheduling, memory of the driver, workers
-      modes           how often the classifier is right
+      modes           how often the classifier is right, and as often as it says
 
     Compare figures of one run only, and quote ratios: machines differ, and share their cores.
     CVODE takes part if scikit-sundae is installed, SciPy's solvers if SciPy is.
@@ -71,13 +76,21 @@ def bench(kind: str, quick: bool, output: Path | None, references: Path | None) 
     from cellcrawl.bench.references import References
 
     one_of("KIND", kind, _KINDS)
+    if calibrate:
+        one_of("KIND with --calibrate", kind, ("modes",))
     known = References(references)
     say(machine.describe(machine.record()))
+    if calibrate:
+        from cellcrawl.bench import confidence
+
+        say(f"fitted   {confidence.calibrate()}")
     result = _MEASURE[kind](quick, known)
     if output is not None:
         machine.write(output / f"{kind}.json", result.data)
         if result.figure is not None:
             result.figure.savefig(output / f"{kind}.png", dpi=160)
+        for name, figure in (result.more or {}).items():
+            figure.savefig(output / f"{name}.png", dpi=160)
         say(f"results  {output}")
     return 0
 
@@ -85,6 +98,7 @@ def bench(kind: str, quick: bool, output: Path | None, references: Path | None) 
 class _Result(NamedTuple):
     data: dict[str, Any]
     figure: Any
+    more: dict[str, Any] | None = None
 
 
 def _work_precision(quick: bool, known: References) -> _Result:
@@ -158,14 +172,18 @@ def _startup(quick: bool, known: References) -> _Result:
 
 
 def _modes(quick: bool, known: References) -> _Result:
-    from cellcrawl.bench import modes
+    from cellcrawl.bench import confidence, modes
 
     kinds = list(_table(modes.Kind, modes.measure_kinds(quick)))
     tracks, right = (sum(getattr(row, name) for row in kinds) for name in ("tracks", "right"))
     say(f"{right} of {tracks} synthetic tracks named right ({right / tracks:.2%})")
     points = list(_table(modes.Point, modes.measure_points(quick)))
+    together, apart = confidence.measure(quick)
+    rows = list(_table(confidence.Reliability, [*together, *apart]))
+    say(f"confidence differs from the part that is right by {confidence.largest_gap(rows):.2f}")
     data = {"kinds": [r._asdict() for r in kinds], "points": [r._asdict() for r in points]}
-    return _Result(data, modes.plot())
+    data["confidence"] = [r._asdict() for r in rows]
+    return _Result(data, modes.plot(), {"confidence": confidence.plot(together, apart)})
 
 
 def _storage(quick: bool, known: References) -> _Result:
