@@ -28,9 +28,13 @@ def nearest_name(name: object, known: Iterable[str]) -> str:
     Case does not count: ``d`` is nearest to ``D``.
     """
     known = sorted(known)
+    close = close_name(name, known)
+    return f"did you mean {close!r}?" if close else f"known names: {', '.join(known)}"
+
+
+def close_name(name: object, known: Iterable[str]) -> str | None:
+    """Return the one of ``known`` that a misspelt name is close to, None if there is none."""
     plain = {word.casefold(): word for word in known}
     text = name.casefold() if isinstance(name, str) else ""
-    close = [plain[word] for word in difflib.get_close_matches(text[:80], plain, n=1, cutoff=0.5)]
-    if close:
-        return f"did you mean {close[0]!r}?"
-    return f"known names: {', '.join(known)}"
+    close = difflib.get_close_matches(text[:80], plain, n=1, cutoff=0.5)
+    return plain[close[0]] if close else None

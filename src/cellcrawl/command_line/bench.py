@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Iterable
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import Any, NamedTuple
 
 import click
 
-from cellcrawl.command_line.options import say
+from cellcrawl.command_line.options import make_folder, save_picture, say
 from cellcrawl.validation import one_of
 
 _KINDS = ("work-precision", "targets", "scaling", "startup", "modes", "sweep")
@@ -25,7 +26,7 @@ _KINDS = ("work-precision", "targets", "scaling", "startup", "modes", "sweep")
     help="Also write the results there, as JSON with machine and versions, and a picture.",
 )
 def bench(kind: str, quick: bool, output: Path | None) -> int:
-    r"""Measure accuracy and speed on this machine.
+    """Measure accuracy and speed on this machine.
 
     \b
     KIND is one of
@@ -47,12 +48,14 @@ def bench(kind: str, quick: bool, output: Path | None) -> int:
     from cellcrawl.bench import machine
 
     one_of("KIND", kind, _KINDS)
+    if output is not None:
+        make_folder(output)  # before measuring for minutes
     say(machine.describe(machine.record()))
     result = _MEASURE[kind](quick)
     if output is not None:
         machine.write(output / f"{kind}.json", result.data)
         if result.figure is not None:
-            result.figure.savefig(output / f"{kind}.png", dpi=160)
+            save_picture(result.figure, output / f"{kind}.png", 160)
         say(f"results  {output}")
     return 0
 
@@ -74,7 +77,7 @@ def _work_precision(quick: bool) -> _Result:
         for solver in dict.fromkeys(row.solver for row in part if row.solver != "adaptive"):
             shown = {e: wp.speed_up(part, solver, e) for e in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)}
             ratios.append({"case": case, "t_end": t_end, "solver": solver, "times": shown})
-            values = "  ".join(f"{e:g}: {ratio:.1f}x" for e, ratio in shown.items())
+            values = "  ".join(f"{e:g}: {_times(ratio)}" for e, ratio in shown.items())
             say(f"{case}, t = {t_end:g}: adaptive is faster than {solver} at error {values}")
     return _Result({"rows": [row._asdict() for row in rows], "ratios": ratios}, wp.plot(rows))
 
@@ -140,4 +143,11 @@ def _table(kind: Any, rows: Iterable[Any]) -> Iterable[Any]:
 
 
 def _cell(value: Any) -> str:
-    return f"{value:.3g}" if isinstance(value, float) else str(value)
+    if isinstance(value, float):
+        return "-" if math.isnan(value) else f"{value:.3g}"
+    return str(value)
+
+
+def _times(ratio: float) -> str:
+    """Return a ratio of speeds; NaN where a solver did not reach that error."""
+    return "-" if math.isnan(ratio) else f"{ratio:.1f}x"

@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from cellcrawl.command_line.options import say
-from cellcrawl.errors import InputError, StorageError
+from cellcrawl.command_line.main import USER_MISTAKE, complain
+from cellcrawl.command_line.options import cannot_write, say
+from cellcrawl.errors import CellcrawlError, InputError
+from cellcrawl.validation import shown
 
 if TYPE_CHECKING:
     from cellcrawl.modes import Classification
@@ -37,11 +39,12 @@ _COLUMNS = ("t", "x", "y")
     metavar="TABLE",
     help="Also write the table with all measures, as .csv.",
 )
-def classify(files: tuple[Path, ...], cell_radius: float | None, output: Path | None) -> None:
+def classify(files: tuple[Path, ...], cell_radius: float | None, output: Path | None) -> int:
     """Name the motility mode of each FILE: gliding, rotational, zigzag, other, stationary or torn.
 
     A FILE is a run (.nc, .zarr) or a table of a centroid track with the columns t, x and y in any
     units; a column "track" keeps several tracks apart. Of several the mode of most is named too.
+    A file that cannot be read is left out and named at the end; the exit code is then 2.
 
     \b
     Examples
@@ -50,7 +53,11 @@ def classify(files: tuple[Path, ...], cell_radius: float | None, output: Path | 
     """
     from cellcrawl.modes import combine
 
-    found = [(name, result) for file in files for name, result in _results(file, cell_radius)]
+    if output is not None and output.suffix.lower() != ".csv":
+        raise InputError(f"--output {shown(str(output))}: the table is written as .csv")
+    found, refused = _all_results(files, cell_radius)
+    if not found:
+        raise refused[0]
     wide = max(len("file"), *(len(name) for name, _ in found))
     say(f"{'file':{wide}}  mode        sure  turned  swings  period  speed   seen by")
     for name, result in found:
@@ -68,9 +75,30 @@ def classify(files: tuple[Path, ...], cell_radius: float | None, output: Path | 
     if output is not None:
         _write(output, found)
         say(f"table    {output}")
+    for error in refused:
+        complain(f"left out: {error}")
+    return USER_MISTAKE if refused else 0
 
 
-def _results(file: Path, cell_radius: float | None) -> Iterator[tuple[str, Classification]]:
+def _all_results(
+    files: tuple[Path, ...], cell_radius: float | None
+) -> tuple[list[tuple[str, Classification]], list[CellcrawlError]]:
+    """Return the tracks that have a mode, and why the others have none: one stops no other."""
+    found: list[tuple[str, Classification]] = []
+    refused: list[CellcrawlError] = []
+    for file in files:
+        try:
+            for result in _results(file, cell_radius, refused):
+                found.append(result)
+        except CellcrawlError as error:
+            refused.append(error)
+    return found, refused
+
+
+def _results(
+    file: Path, cell_radius: float | None, refused: list[CellcrawlError]
+) -> Iterator[tuple[str, Classification]]:
+    """Yield the modes of a file's tracks; a track that has none is noted and passed over."""
     import cellcrawl as cc
 
     if file.suffix in _RUNS:
@@ -79,8 +107,13 @@ def _results(file: Path, cell_radius: float | None) -> Iterator[tuple[str, Class
         return
     for name, (t, x, y) in _tracks(file).items():
         label = f"{file} {name}".rstrip()
-        with _complaints_name(label):
-            yield label, cc.classify_track(t, x, y, cell_radius=cell_radius)
+        try:
+            with _complaints_name(label):
+                result = cc.classify_track(t, x, y, cell_radius=cell_radius)
+        except InputError as error:
+            refused.append(error)
+        else:
+            yield label, result
 
 
 @contextlib.contextmanager
@@ -118,7 +151,7 @@ def _tracks(file: Path) -> dict[str, tuple[list[float], list[float], list[float]
                 values.append(float(cell))
             except (TypeError, ValueError):
                 raise InputError(
-                    f"{file}, row {number}: {column} = {cell!r} is not a number"
+                    f"{file}, row {number}: {column} = {shown(cell)} is not a number"
                 ) from None
     if not tracks:
         raise InputError(f"{file} has no rows below its column names")
@@ -135,8 +168,9 @@ def _write(output: Path, found: list[tuple[str, Classification]]) -> None:
             table.writerows(rows)
         partial.replace(output)
     except OSError as error:
-        partial.unlink(missing_ok=True)
-        raise StorageError(f"cannot write {output}: {error.strerror or error}") from None
+        with contextlib.suppress(OSError):
+            partial.unlink(missing_ok=True)
+        raise cannot_write(output, error) from None
 
 
 def _cell(value: float, form: str) -> str:

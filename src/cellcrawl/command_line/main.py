@@ -54,8 +54,9 @@ class _LazyGroup(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         if args and args[0] not in _COMMANDS and not args[0].startswith("-"):
             from cellcrawl.errors import nearest_name
+            from cellcrawl.validation import shown
 
-            ctx.fail(f"no command {args[0]!r}: {nearest_name(args[0], _COMMANDS)}")
+            ctx.fail(f"no command {shown(args[0])}: {nearest_name(args[0], _COMMANDS)}")
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -121,21 +122,22 @@ def run(arguments: Sequence[str] | None = None) -> int:
     except click.ClickException as error:
         context = getattr(error, "ctx", None)
         path = context.command_path if context is not None else "cellcrawl"
-        _complain(f"{error.format_message()} (see {path} --help)")
+        complain(f"{error.format_message()} (see {path} --help)")
         return USER_MISTAKE
     except InputError as error:
-        _complain(str(error))
+        complain(str(error))
         return USER_MISTAKE
     except CellcrawlError as error:
-        _complain(str(error))
+        complain(str(error))
         return RUN_FAILED
     except KeyboardInterrupt:
-        _complain("stopped")
+        complain("stopped")
         return CANCELLED
     except BrokenPipeError:
         return 0
     return result if isinstance(result, int) else 0
 
 
-def _complain(message: str) -> None:
+def complain(message: str) -> None:
+    """Print a line of complaint."""
     click.echo(f"cellcrawl: {message}", err=True)

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
+from cellcrawl.arguments import file_path
+from cellcrawl.errors import InputError, StorageError
 from cellcrawl.parameters import DESCRIPTIONS, ELASTICITIES, Parameters
+from cellcrawl.validation import shown
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -45,3 +49,41 @@ def wants_progress() -> bool:
 def say(message: str) -> None:
     """Print a line of the result."""
     click.echo(message)
+
+
+def save_picture(figure: Any, path: Path, dpi: int) -> None:
+    """Write a picture and say so.
+
+    Raises
+    ------
+    InputError
+        For a suffix that is no kind of picture.
+    StorageError
+        If it cannot be written.
+    """
+    file_path("--output", path)
+    kinds = figure.canvas.get_supported_filetypes()
+    if path.suffix[1:].lower() not in kinds:
+        raise InputError(f"{shown(str(path))} is no picture: its name ends in .png, .pdf or .svg")
+    try:
+        figure.savefig(path, dpi=dpi)
+    except (OSError, ValueError) as error:
+        raise cannot_write(path, error) from None
+    say(f"picture  {path}")
+
+
+def make_folder(path: Path) -> None:
+    """Make a folder for results, or raise `StorageError`."""
+    file_path("--output", path)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StorageError(
+            f"cannot make the folder {path}: {error.strerror or error}; give another --output"
+        ) from None
+
+
+def cannot_write(path: Path, error: Exception) -> StorageError:
+    """Return the error to raise when a result cannot be written."""
+    reason = getattr(error, "strerror", None) or " ".join(str(error).split())
+    return StorageError(f"cannot write {path}: {reason}; give another --output")

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.curve import fourier
 from cellcrawl.errors import InputError
 from cellcrawl.validation import real_array, real_number, whole_number
@@ -158,6 +159,7 @@ class Curve:
         """Return the curve translated by ``shift``, shape (2,)."""
         return dataclasses.replace(self, origin=self.origin + real_array("shift", shift, (2,)))
 
+    @checked
     def resampled(self, nodes: int) -> Curve:
         """Return the same curve on another number of equally spaced nodes, node 0 in place."""
         whole_number("Curve nodes", nodes, FEWEST_NODES)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.modes import rule
 from cellcrawl.modes.measures import measure, measure_rest, onset
 from cellcrawl.modes.result import Classification, Measures
@@ -28,6 +29,7 @@ _FEW_TURNS = 3  # a track that has turned less often, and less than once round, 
 _UNTOLD = 0.6  # the confidence it can have
 
 
+@checked
 def classify(dataset: xr.Dataset, *, use_size: bool = True) -> Classification:
     """Name the motility mode of a run.
 
@@ -64,6 +66,7 @@ def classify(dataset: xr.Dataset, *, use_size: bool = True) -> Classification:
     return _classify(track, radius if use_size else None)
 
 
+@checked
 def classify_track(
     t: Any, x: Any, y: Any, *, cell_radius: float | None = None, status: str = "completed"
 ) -> Classification:
@@ -104,6 +107,7 @@ def classify_track(
     return _classify(as_track(t, x, y, at_least=FEWEST_RECORDS), cell_radius)
 
 
+@checked
 def is_long_enough(dataset: xr.Dataset) -> bool:
     """Whether a run of the model lasts `SHORTEST_RUN` and has the records to show its mode."""
     times = dataset["time"].values

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.observables.track import Track, as_track
 from cellcrawl.validation import real_number
@@ -14,6 +15,7 @@ from cellcrawl.validation import real_number
 _EVEN = 1e-6  # of the interval: times that differ by no more from even ones are even
 
 
+@checked
 def mean_squared_displacement(
     run: Any, x: Any = None, y: Any = None, *, longest: float | None = None
 ) -> xr.DataArray:

@@ -6,6 +6,7 @@ import xarray as xr
 
 from cellcrawl.errors import InputError, nearest_name
 from cellcrawl.simulation.dataset import FIELDS, TIME
+from cellcrawl.validation import shown
 
 EDGE_FIELDS = tuple(name for name, field in FIELDS.items() if "node" in field.dims)
 """The fields that live on the edge, one value a node."""
@@ -35,8 +36,8 @@ def records_with(dataset: xr.Dataset, *names: str, at_least: int = 1) -> xr.Data
 
 def edge_field(name: str) -> str:
     """Return ``name`` if it is a field on the edge, or raise `InputError`."""
-    if name not in EDGE_FIELDS:
+    if not isinstance(name, str) or name not in EDGE_FIELDS:
         raise InputError(
-            f"there is no field {name!r} on the edge: {nearest_name(name, EDGE_FIELDS)}"
+            f"there is no field {shown(name)} on the edge: {nearest_name(name, EDGE_FIELDS)}"
         )
     return name

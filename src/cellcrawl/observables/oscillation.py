@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.observables.inputs import records_with
 from cellcrawl.observables.smoothing import smooth
 from cellcrawl.observables.track import Track, as_track
@@ -43,6 +44,7 @@ class Oscillation:
     cycles: float
 
 
+@checked
 def oscillation(t: Any, values: Any, *, after: float | None = None) -> Oscillation:
     """Return period and amplitude of a signal.
 
@@ -87,6 +89,7 @@ def oscillation(t: Any, values: Any, *, after: float | None = None) -> Oscillati
     return _periods(times, series, whole)
 
 
+@checked
 def tension_oscillation(dataset: xr.Dataset, *, after: float | None = None) -> Oscillation:
     """Return period and amplitude of the membrane tension.
 
@@ -115,6 +118,7 @@ def tension_oscillation(dataset: xr.Dataset, *, after: float | None = None) -> O
     return oscillation(run["time"].values, run["tension"].values, after=after)
 
 
+@checked
 def lateral_oscillation(
     run: Any, x: Any = None, y: Any = None, *, after: float | None = None
 ) -> Oscillation:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.observables.smoothing import smooth
 from cellcrawl.observables.track import as_track
 from cellcrawl.validation import one_of
@@ -37,6 +38,7 @@ class Persistence:
     speed: float
 
 
+@checked
 def persistence(run: Any, x: Any = None, y: Any = None, *, kind: str = "direction") -> Persistence:
     """Return persistence time and length, from the correlation of the motion with itself later.
 
@@ -80,6 +82,7 @@ def persistence(run: Any, x: Any = None, y: Any = None, *, kind: str = "directio
     return Persistence(time, time * speed if speed > 0.0 else 0.0, speed)
 
 
+@checked
 def velocity_correlation(
     run: Any, x: Any = None, y: Any = None, *, kind: str = "direction"
 ) -> xr.DataArray:

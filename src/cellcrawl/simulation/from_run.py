@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.curve import Curve, fourier
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import Parameters
@@ -17,6 +18,7 @@ from cellcrawl.starts import CellState
 from cellcrawl.validation import whole_number
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class FromRun:
     """A state of a saved run as the first state of another; immutable.
@@ -32,6 +34,7 @@ class FromRun:
     run: xr.Dataset | str | Path
     record: int = -1
 
+    @checked
     def state(self, parameters: Parameters, nodes: int) -> CellState:
         """Return the saved state on ``nodes`` nodes; its tension is kept."""
         frame = self.saved_record()

@@ -7,6 +7,7 @@ from typing import Any
 
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import CONSTANT, Conditions, Parameters, Schedule
 from cellcrawl.simulation.dataset import decode_attribute
@@ -21,6 +22,7 @@ from cellcrawl.starts import RandomPerturbation, Start
 from cellcrawl.validation import real_number
 
 
+@checked
 def simulate(
     parameters: Parameters | None = None,
     t_end: float = 100.0,
@@ -120,6 +122,7 @@ def follow(
     return follower.follow(description.t_end)
 
 
+@checked
 def resume(path: str | Path, t_end: float, *, progress: bool = False) -> xr.Dataset:
     """Go on with a saved run, to the same bits as if it had never stopped.
 

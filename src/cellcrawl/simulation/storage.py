@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError, MissingExtraError, StorageError
 from cellcrawl.simulation import blocks, formats
 from cellcrawl.simulation.dataset import SCHEMA_VERSION
@@ -226,6 +227,7 @@ def _without_first(attributes: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in attributes.items() if name != _FIRST}
 
 
+@checked
 def open_run(path: str | Path) -> xr.Dataset:
     """Open a saved run, finished or not.
 

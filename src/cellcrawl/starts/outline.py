@@ -8,13 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from cellcrawl.curve import Curve, fourier, from_polygon, simple_polygon
+from cellcrawl.arguments import checked
+from cellcrawl.curve import Curve, fourier, from_polygon, polygon_area, simple_polygon
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import Parameters
 from cellcrawl.starts.base import CellState
 from cellcrawl.validation import real_array, real_number
 
+_TIMES = 3.0  # larger or smaller than the resting circle, an outline is in other units
 
+
+@checked
 @dataclass(frozen=True, eq=False)
 class FromOutline:
     """Any simple closed polygon as the edge, with uniform or given bound fraction; immutable.
@@ -29,15 +33,16 @@ class FromOutline:
         Membrane tension; that of the resting circle unless given.
     radius : float, optional
         Rescale the outline about its centroid to the area of a circle of this radius, so that an
-        outline in micrometres or pixels may be given as it is. The resting circle has radius 1.
+        outline in micrometres or pixels may be given as it is. The resting circle has radius 1;
+        without ``radius`` an outline of another size than a cell's is refused.
     smoothing : float
         Width of the Gaussian that rounds the corners, over the outline's length, 0.001 to 0.1.
 
     Raises
     ------
     InputError
-        For fewer than three corners, values that are not finite, or an outline that crosses or
-        touches itself.
+        For fewer than three corners, values that are not finite, an outline that crosses or
+        touches itself, or one in other units than cell radii.
     """
 
     xy: np.ndarray
@@ -55,7 +60,9 @@ class FromOutline:
             bound = self._checked_bound()
             bound.setflags(write=False)
             object.__setattr__(self, "bound_fraction", bound)
-        if self.radius is not None:
+        if self.radius is None:
+            _check_size(xy)
+        else:
             radius = real_number("radius", self.radius, 0.0, 1e6, open_low=True)
             object.__setattr__(self, "radius", radius)
         if self.tension is not None:
@@ -63,6 +70,7 @@ class FromOutline:
         smoothing = real_number("smoothing", self.smoothing, 0.001, 0.1)
         object.__setattr__(self, "smoothing", smoothing)
 
+    @checked
     def state(self, parameters: Parameters, nodes: int) -> CellState:
         """Return the first state on ``nodes`` nodes."""
         curve = from_polygon(self.xy, nodes, self.smoothing)
@@ -116,3 +124,14 @@ class FromOutline:
         )
         smooth = np.fft.ifft(np.fft.fft(values) * damping).real
         return np.clip(smooth, 0.0, 1.0)
+
+
+def _check_size(xy: np.ndarray) -> None:
+    """Refuse an outline in micrometres, pixels or metres: it would run as a cell of that size."""
+    radius = math.sqrt(abs(polygon_area(xy)) / math.pi)
+    if not 1.0 / _TIMES <= radius <= _TIMES:
+        raise InputError(
+            f"the outline has the area of a circle of radius {radius:.4g}, a resting cell has "
+            f"radius 1: are its units others? Give radius=1 to make it a cell's size, or "
+            f"radius={radius:.4g} to keep it"
+        )

@@ -8,6 +8,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+from cellcrawl.arguments import checked
 from cellcrawl.sweeps import worker
 from cellcrawl.sweeps.crew import Crew, Todo
 from cellcrawl.sweeps.executors import executor_for
@@ -19,6 +20,7 @@ from cellcrawl.sweeps.worker import Execute
 from cellcrawl.validation import one_of, whole_number
 
 
+@checked
 def sweep(
     grid: Any,
     output: str | Path = "diagram",

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import CONSTANT, Parameters, Schedule
 from cellcrawl.parameters.named import read_toml
@@ -26,6 +27,7 @@ _TABLES = ("parameters", "axes", "points", "start", "schedule", "run")
 _RUN = (*SETTINGS, *OPTIONS)
 
 
+@checked
 @dataclass(frozen=True, kw_only=True)
 class Grid:
     """Runs to be made, described by what differs and what they share; immutable.
@@ -86,6 +88,7 @@ class Grid:
     def __len__(self) -> int:
         return math.prod(self.shape)
 
+    @checked
     def run(self, index: int) -> RunDescription:
         """Return the run at an index, 0 to ``len(grid) - 1``."""
         if not 0 <= index < len(self):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.simulation.events import MODEL_ENDINGS
 from cellcrawl.sweeps.axes import plain
@@ -60,6 +61,7 @@ class Sweep:
     interrupted : bool
     """
 
+    @checked
     def __init__(
         self, path: str | Path, grid: Grid | None = None, *, interrupted: bool = False
     ) -> None:
@@ -93,10 +95,12 @@ class Sweep:
         """What is kept: "rows", "tracks" or "fields"."""
         return str(self._manifest["keep"])
 
+    @checked
     def is_of(self, grid: Grid) -> bool:
         """Whether these are the results of ``grid``."""
         return bool(self._manifest["digest"] == grid.digest)
 
+    @checked
     def table(self, columns: list[str] | None = None) -> pa.Table:
         """Return the rows there are, one a run, as a pyarrow Table.
 
@@ -207,6 +211,7 @@ class Sweep:
             runs = runs // coarse * ((coarse - 1) * scale + 1)
         return runs
 
+    @checked
     def failures(self, most: int = 5) -> dict[str, int]:
         """Return the commonest reasons of runs that did not end as the model allows."""
         table = self.table(["status", "message"])
@@ -242,6 +247,7 @@ class Sweep:
         return places
 
 
+@checked
 def open_sweep(path: str | Path, grid: Grid | None = None) -> Sweep:
     """Open the results of a sweep, finished or not.
 
