@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import importlib
 import sys
+import warnings
 from collections.abc import Sequence
 from typing import Any, Final
 
@@ -101,6 +102,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     0: ended as the model allows. 2: a mistake in what was asked. 3: a run that failed. 130: Ctrl-C,
     with what was computed kept.
     """
+    warnings.showwarning = _one_line
     gc.set_threshold(_OBJECTS_BETWEEN_COLLECTIONS, 20, 100)
     code = run(arguments)
     gc.freeze()  # the process ends: a last search for garbage would cost a fifth of a warm start
@@ -118,6 +120,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
             standalone_mode=False,
         )
     except click.exceptions.Abort:
+        complain("stopped")
         return CANCELLED
     except click.ClickException as error:
         context = getattr(error, "ctx", None)
@@ -136,6 +139,11 @@ def run(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         return 0
     return result if isinstance(result, int) else 0
+
+
+def _one_line(message: Warning | str, *_: Any, **__: Any) -> None:
+    """Print a warning as the terminal should have it: without the place in our code."""
+    complain(f"note: {message}")
 
 
 def complain(message: str) -> None:

@@ -17,6 +17,7 @@ from cellcrawl.parameters.temperature import REFERENCE, ActivationEnergies, fact
 from cellcrawl.validation import one_of, real_number
 
 _ROUNDING = 1e-12  # relative: a ratio this close to the end of its range is at the end
+_DIGITS = 12  # of a ratio: what is equal on paper is equal, and one run
 
 
 class Measured(NamedTuple):
@@ -256,7 +257,7 @@ class PhysicalParameters(NamedFields):
 
     def _ratio(self, name: str, ratio: _Ratio) -> float:
         """Return a dimensionless parameter; out of range, name the physical values behind it."""
-        value = ratio.of(self)
+        value = float(f"{ratio.of(self):.{_DIGITS}g}")
         low, high = DESCRIPTIONS[name].low, DESCRIPTIONS[name].high
         nearest = min(max(value, low), high)
         if abs(value - nearest) <= _ROUNDING * nearest:

@@ -23,13 +23,18 @@ def magnitude_in(name: str, value: Any, unit: str) -> Any:
     if not is_quantity(value):
         return value
     try:
-        return value.to(unit).magnitude
+        return _tidy(value.to(unit).magnitude)
     except (TypeError, ValueError, AttributeError, ArithmeticError):  # pint's errors are among them
         text = " ".join(str(value).split())
         given = text if len(text) <= 60 else text[:57] + "..."
         raise InputError(
             f"{name} = {given} has the wrong dimension: it must be in {unit} or a unit like it"
         ) from None
+
+
+def _tidy(number: Any) -> Any:
+    """10 um are 1e-5 m, not 9.999999999999999e-06: conversion may cost the last digit."""
+    return float(f"{number:.15g}") if isinstance(number, float) else number
 
 
 def quantity(value: Any, unit: str) -> Any:

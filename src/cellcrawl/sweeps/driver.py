@@ -45,7 +45,8 @@ def sweep(
         Folder of the results. One that is there is gone on with: no run is made twice.
     executor : Executor or str, optional
         Any `concurrent.futures.Executor`, such as that of a Dask client, or the address of a Dask
-        scheduler, as ``"tcp://node1:8786"``; worker processes on this machine unless given.
+        scheduler, as ``"tcp://node1:8786"``; worker processes on this machine unless given, or in
+        a worker of a `multiprocessing.Pool`, which may start none, that worker itself.
         Workers write to ``output``, so they must see it.
     workers : int, optional
         Number of worker processes; as many as there are cores unless given.
