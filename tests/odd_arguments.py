@@ -18,6 +18,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import cellcrawl as cc
+from cellcrawl.sweeps.executors import InProcess
 from tests.runs import circling
 
 Arguments = dict[str, Any]
@@ -63,7 +64,7 @@ def odd_values() -> list[Any]:
         np.ma.masked, np.arange(12.0), np.array([1, 2]), np.array([1 + 1j]), np.longdouble(1),
         xr.DataArray(1.0), xr.DataArray([1.0, 2.0]), xr.DataArray([True, False]), xr.Dataset(),
         xr.Dataset({"time": ("time", [1.0])}), xr.Dataset({"x": 1}),
-        frames_to_dataset_of_no_records(),
+        run_without_records(),
         decimal.Decimal(1), decimal.Decimal("nan"), fractions.Fraction(1, 2),
         datetime.timedelta(1), datetime.datetime(2020, 1, 1), memoryview(b"ab"),
         axes, axes.ravel(), axes[0, 0], axes.ravel().tolist(), Figure(), Figure().add_subplot(),
@@ -72,7 +73,7 @@ def odd_values() -> list[Any]:
     ]  # fmt: skip
 
 
-def frames_to_dataset_of_no_records() -> xr.Dataset:
+def run_without_records() -> xr.Dataset:
     """Return a run without records."""
     return circling(0.3, records=3).isel(time=slice(0))
 
@@ -89,7 +90,7 @@ def _calls(folder: Path) -> Iterator[Call]:
     file = folder / "run.nc"
     cc.simulate(p, 0.2, nodes=32, save_every=0.1, output=file, rtol=1e-2)
     sweep = cc.sweep(
-        {"r_on": [20, 30], "zeta_1": [500, 600]}, folder / "sweep", t_end=0.1, workers=1,
+        {"r_on": [20, 30], "zeta_1": [500, 600]}, folder / "sweep", InProcess(), t_end=0.1,
         keep="tracks", options={"rtol": 1e-2},
     )  # fmt: skip
     grid = sweep.grid
@@ -251,7 +252,7 @@ def _calls(folder: Path) -> Iterator[Call]:
     yield call(grid.run, index=1)
     yield call(grid.replace, t_end=2.0, axes={"r_on": [20]})
     yield call(
-        cc.sweep, grid=grid, output=sweep.path, executor=None, workers=1, keep="tracks",
+        cc.sweep, grid=grid, output=sweep.path, executor=InProcess(), workers=1, keep="tracks",
         extend=False, retry=False, part=(0, 1), progress=False, t_end=0.1,
     )  # fmt: skip
     yield call(cc.open_sweep, path=sweep.path, grid=grid)
@@ -318,7 +319,7 @@ def _calls(folder: Path) -> Iterator[Call]:
         view="follow", field="bound_fraction", limits=limits, size=(64, 64), progress=False,
     )  # fmt: skip
     yield call(
-        cc.sweeps.refine, grid=grid, output=sweep.path, executor=None, levels=1, x="r_on",
+        cc.sweeps.refine, grid=grid, output=sweep.path, executor=InProcess(), levels=1, x="r_on",
         y="zeta_1", workers=1, keep="tracks", progress=False, t_end=0.1,
     )  # fmt: skip
 

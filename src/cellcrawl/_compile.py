@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import getpass
+import multiprocessing
 import os
 import tempfile
 import warnings
@@ -30,8 +31,10 @@ def _keeps_kernels() -> bool:
     folder = _temporary_folder()
     kept = folder is not None
     if kept:
-        numba.config.CACHE_DIR = str(folder)
+        numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"] = str(folder)  # for workers too
         kept = _has_a_place()
+    if multiprocessing.parent_process() is not None:
+        return kept  # who started this worker has been told
     where = (
         f"they are kept in {folder}, as long as that stays"
         if kept

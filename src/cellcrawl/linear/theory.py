@@ -79,7 +79,7 @@ def growth_rates(parameters: Parameters, k: Any, **values: Any) -> np.ndarray:
     quadratic = characteristic(parameters, k, given)
     half = 0.5 * quadratic.damping / quadratic.a
     product = quadratic.restoring / quadratic.a
-    square = 0.25 * quadratic.discriminant / quadratic.a**2
+    square = 0.25 * quadratic.discriminant / (quadratic.a * quadratic.a)
     return ordered_roots(half, product, square)
 
 

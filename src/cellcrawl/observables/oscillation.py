@@ -14,6 +14,7 @@ from cellcrawl.observables.inputs import records_with
 from cellcrawl.observables.smoothing import smooth
 from cellcrawl.observables.track import Track, as_track
 from cellcrawl.observables.turns import Swings, crossing_times, swings_of
+from cellcrawl.records import EqualWithNaN
 from cellcrawl.validation import real_array, real_number
 
 _TRANSIENT = 0.25  # part of the time left out at the beginning unless said otherwise
@@ -21,8 +22,8 @@ _HYSTERESIS = 0.3  # of the range: smaller ups and downs are ripples
 _FEWEST = 8
 
 
-@dataclass(frozen=True)
-class Oscillation:
+@dataclass(frozen=True, eq=False)
+class Oscillation(EqualWithNaN):
     """Period and amplitude of a signal that goes up and down.
 
     Attributes

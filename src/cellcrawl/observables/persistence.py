@@ -12,6 +12,7 @@ import xarray as xr
 from cellcrawl.arguments import checked
 from cellcrawl.observables.smoothing import smooth
 from cellcrawl.observables.track import as_track
+from cellcrawl.records import EqualWithNaN
 from cellcrawl.validation import one_of
 
 KINDS = ("direction", "velocity")
@@ -19,8 +20,8 @@ _FEWEST = 8
 _FORGOTTEN = math.exp(-1.0)
 
 
-@dataclass(frozen=True)
-class Persistence:
+@dataclass(frozen=True, eq=False)
+class Persistence(EqualWithNaN):
     """How long a cell keeps its direction.
 
     Attributes
