@@ -31,7 +31,8 @@ def _keeps_kernels() -> bool:
     folder = _temporary_folder()
     kept = folder is not None
     if kept:
-        numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"] = str(folder)  # for workers too
+        os.environ["NUMBA_CACHE_DIR"] = str(folder)  # for workers too
+        setattr(numba.config, "CACHE_DIR", str(folder))  # noqa: B010, which its types lack
         kept = _has_a_place()
     if multiprocessing.parent_process() is not None:
         return kept  # who started this worker has been told

@@ -168,7 +168,7 @@ def _number(name: str, value: Any) -> float:
     if not is_real(value):
         raise InputError(f"{name} must be a number, not {shown(value)}")
     if value != value:
-        raise InputError(f"{name} must be a number, not NaN")
+        raise InputError(f"{name} = nan is out of range: it must be a number")
     try:
         return float(value)
     except OverflowError:
@@ -190,8 +190,10 @@ def _complex(name: str, value: Any) -> complex:
 
 def _whole(name: str, value: Any) -> int:
     value = plain_number(value)
-    if not is_real(value) or value != value or value in (np.inf, -np.inf) or value != int(value):
+    if not is_real(value):
         raise InputError(f"{name} must be a whole number, not {shown(value)}")
+    if value != value or value in (np.inf, -np.inf) or value != int(value):
+        raise InputError(f"{name} = {shown(value)} is out of range: it must be a whole number")
     return int(value)
 
 
@@ -202,12 +204,13 @@ def _text(name: str, value: Any) -> str:
 
 
 def _instance_of(kind: type) -> Check:
-    word = kind.__name__
-    article = "an" if word[0] in "AEIOU" else "a"
+    word = "a table of names and values" if kind is Mapping else kind.__name__
+    if kind is not Mapping and not word.endswith("s"):
+        word = f"{'an' if word[0] in 'AEIOU' else 'a'} {word}"
 
     def check(name: str, value: Any) -> Any:
         if not isinstance(value, kind):
-            raise InputError(f"{name} must be {article} {word}, not {shown(value)}")
+            raise InputError(f"{name} must be {word}, not {shown(value)}")
         return value
 
     return check

@@ -15,7 +15,7 @@ class EqualWithNaN:
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        return _comparable(self) == _comparable(other)
+        return bool(_comparable(self) == _comparable(other))
 
     def __hash__(self) -> int:
         return hash(_comparable(self))

@@ -89,7 +89,7 @@ def table(what: str, value: Any) -> Mapping[str, Any]:
     return value
 
 
-def shown(value: Any) -> str:
+def shown(value: Any, longest: int = 60) -> str:
     """Return ``value`` as short text on one line, whatever it is."""
     if isinstance(value, np.generic):
         value = value.item()
@@ -97,7 +97,7 @@ def shown(value: Any) -> str:
         text = " ".join(repr(value).split())
     except Exception:  # a whole number of thousands of digits, or a broken __repr__
         text = f"<{type(value).__name__}>"
-    return text if len(text) <= 60 else text[:57] + "..."
+    return text if len(text) <= longest else text[: longest - 3] + "..."
 
 
 def plain_number(value: Any) -> Any:

@@ -64,7 +64,9 @@ def save_picture(figure: Any, path: Path, dpi: int) -> None:
     file_path("--output", path)
     kinds = figure.canvas.get_supported_filetypes()
     if path.suffix[1:].lower() not in kinds:
-        raise InputError(f"{shown(str(path))} is no picture: its name ends in .png, .pdf or .svg")
+        raise InputError(
+            f"cannot write {shown(str(path), 300)}: a picture's name ends in .png, .pdf or .svg"
+        )
     try:
         figure.savefig(path, dpi=dpi)
     except (OSError, ValueError) as error:

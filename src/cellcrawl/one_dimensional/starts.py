@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
-from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError, nearest_name
 from cellcrawl.one_dimensional.cell import still_tension
 from cellcrawl.parameters import Parameters
@@ -15,7 +14,6 @@ from cellcrawl.validation import real_number, shown
 _HIGHEST_TENSION = 1e6
 
 
-@checked
 @dataclass(frozen=True, kw_only=True)
 class TwoEdges:
     """Bound fractions of front and rear and the tension at time 0; immutable.

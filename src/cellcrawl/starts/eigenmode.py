@@ -21,7 +21,6 @@ BRANCHES = ("+", "-")
 CARRIERS = ("radius", "bound_fraction")
 
 
-@checked
 @dataclass(frozen=True)
 class Eigenmode:
     """The resting circle with one eigenmode, exact to second order in the amplitude; immutable.

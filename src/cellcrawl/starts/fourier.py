@@ -23,7 +23,6 @@ _HIGHEST_MODE = 1000
 Modes = Mapping[int, tuple[float, float]]
 
 
-@checked
 @dataclass(frozen=True)
 class PerturbedCircle:
     """The resting circle with chosen modes of shape and bound fraction; immutable.
@@ -68,7 +67,6 @@ class PerturbedCircle:
         }
 
 
-@checked
 @dataclass(frozen=True)
 class RandomPerturbation:
     """The resting circle with independent random modes of shape and bound fraction; immutable.

@@ -18,7 +18,6 @@ from cellcrawl.validation import real_array, real_number
 _TIMES = 3.0  # larger or smaller than the resting circle, an outline is in other units
 
 
-@checked
 @dataclass(frozen=True, eq=False)
 class FromOutline:
     """Any simple closed polygon as the edge, with uniform or given bound fraction; immutable.

@@ -10,6 +10,7 @@ import re
 import sys
 from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
+from pathlib import Path
 from typing import Any
 
 from cellcrawl.errors import InputError, MissingExtraError
@@ -127,8 +128,8 @@ def _silence_dask() -> None:
 
 def _see_that_workers_know(grid: Grid) -> None:
     """Refuse a start of a class that is defined where no new process finds it."""
-    main = sys.modules["__main__"]
-    if _needs_main(grid) and not hasattr(main, "__file__"):
+    script = getattr(sys.modules["__main__"], "__file__", None)
+    if _needs_main(grid) and (script is None or not Path(script).is_file()):
         raise InputError(
             "a start is of a class that is defined in this notebook or session, where worker "
             "processes cannot find it: put the class in a file of its own and import it, or give "
