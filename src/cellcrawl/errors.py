@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import errno
 from collections.abc import Iterable
 
 
@@ -20,6 +21,19 @@ class StorageError(CellcrawlError, OSError):
 
 class MissingExtraError(CellcrawlError, ImportError):
     """An optional dependency is needed; the message says which extra installs it."""
+
+
+def what_would_help(error: OSError, reason: str = "") -> str:
+    """Return when a write that failed can succeed: "once there is room" only for a full disk.
+
+    ``reason`` is the system's word for it, where ``error`` has no number.
+    """
+    full = (
+        error.errno in (errno.ENOSPC, getattr(errno, "EDQUOT", None))
+        or "space" in reason
+        or "quota" in reason
+    )
+    return "once there is room" if full else "once it can be written"
 
 
 def nearest_name(name: object, known: Iterable[str]) -> str:

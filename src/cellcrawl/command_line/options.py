@@ -51,6 +51,12 @@ def say(message: str) -> None:
     click.echo(message)
 
 
+def near(path: Path) -> Path:
+    """Return a path below the present folder as seen from there, another one as it is."""
+    here = Path.cwd()
+    return path.relative_to(here) if path.is_relative_to(here) else path
+
+
 def save_picture(figure: Any, path: Path, dpi: int) -> None:
     """Write a picture and say so.
 

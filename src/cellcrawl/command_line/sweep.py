@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from cellcrawl.command_line.main import CANCELLED
-from cellcrawl.command_line.options import save_picture, say, wants_progress
+from cellcrawl.command_line.options import near, save_picture, say, wants_progress
 from cellcrawl.errors import InputError
 
 _PICTURE = "diagram.png"
@@ -151,7 +151,7 @@ def _report(found: Any) -> None:
         say(f"modes    {_counted(status.modes)}")
     for reason, count in found.failures().items():
         say(f"failed   {count}: {reason}")
-    say(f"rows     {found.path / 'rows'}")
+    say(f"rows     {near(found.path / 'rows')}")
 
 
 def _refined(found: Any, status: Any) -> str:
@@ -171,5 +171,5 @@ def _finish(found: Any, picture: bool) -> int:
         from cellcrawl import plot
         from cellcrawl.plot.style import figure_of
 
-        save_picture(figure_of(plot.diagram(found)), found.path / _PICTURE, 200)
+        save_picture(figure_of(plot.diagram(found)), near(found.path / _PICTURE), 200)
     return 0

@@ -20,7 +20,7 @@ import numpy as np
 import xarray as xr
 
 from cellcrawl.arguments import checked
-from cellcrawl.errors import InputError, MissingExtraError, StorageError
+from cellcrawl.errors import InputError, MissingExtraError, StorageError, what_would_help
 from cellcrawl.simulation import blocks, formats
 from cellcrawl.simulation.dataset import SCHEMA_VERSION
 
@@ -95,7 +95,8 @@ class RunStore:
                 temporary.unlink(missing_ok=True)
             raise StorageError(
                 f"cannot write to {self.part}: {_reason(error)}; what was saved before "
-                f"stays readable, and `cellcrawl resume {self.path}` goes on once there is room"
+                f"stays readable, and `cellcrawl resume {self.path}` goes on "
+                f"{what_would_help(error, _reason(error))}"
             ) from None
 
     def finish(
