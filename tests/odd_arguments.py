@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime
 import decimal
 import fractions
+import functools
 import inspect
 import math
 import warnings
@@ -43,6 +44,7 @@ class Hostile:
     __hash__ = object.__hash__
 
 
+@functools.cache
 def odd_values() -> list[Any]:
     """Return values that are wrong in most places: of wrong kinds, sizes, signs and boxes."""
     axes = Figure().subplots(2, 2)

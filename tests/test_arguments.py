@@ -104,7 +104,7 @@ def test_numbers_are_taken_out_of_their_boxes(box):
         ({"flag": 1}, "flag must be True or False, not 1"),
         ({"flag": np.zeros(2)}, "flag must be True or False"),
         ({"cell": {"r_on": 20}}, "cell must be Parameters, not {'r_on': 20}"),
-        ({"words": "text"}, "words must be a list, not 'text'"),
+        ({"words": 1}, "words must be a list, not 1"),
         ({"words": ["a", 1]}, r"words\[1\] must be text, not 1"),
     ],
 )

@@ -44,29 +44,26 @@ def checked(function: F) -> F:
         kind: Any = function
         kind.__init__ = checked(kind.__init__)
         return cast(F, kind)
-    signature = inspect.signature(function)
+    parameters = inspect.signature(function).parameters.values()
+    order = [p.name for p in parameters if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
 
     @functools.cache  # on the first call, when every name in an annotation is defined
     def checks() -> dict[str, Check]:
-        found = {}
-        for name, parameter in signature.parameters.items():
-            if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
-                continue
-            check = _check_for(_resolved(function, parameter.annotation))
-            if check is not None:
-                found[name] = check
-        return found
+        named = [p for p in parameters if p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)]
+        found = {p.name: _check_for(_resolved(function, p.annotation)) for p in named}
+        return {name: check for name, check in found.items() if check is not None}
 
     @functools.wraps(function)
     def call(*args: Any, **named: Any) -> Any:
-        try:
-            given = signature.bind(*args, **named)
-        except TypeError:
-            return function(*args, **named)  # Python's own words on a missing or unknown argument
-        for name, check in checks().items():
-            if name in given.arguments:
-                given.arguments[name] = check(name, given.arguments[name])
-        return function(*given.args, **given.kwargs)
+        known = checks()
+        given = list(args)  # too many or too few are left for Python to name
+        for place, (name, value) in enumerate(zip(order, args, strict=False)):
+            if name in known:
+                given[place] = known[name](name, value)
+        for name, value in named.items():
+            if name in known:
+                named[name] = known[name](name, value)
+        return function(*given, **named)
 
     call.__checked__ = True  # type: ignore[attr-defined]
     return cast(F, call)
@@ -107,6 +104,8 @@ def _check_for(annotation: Any) -> Check | None:
     """Return what holds an argument to its annotation; None if that allows anything."""
     if annotation in _SIMPLE:
         return _SIMPLE[annotation]
+    if getattr(annotation, "_is_protocol", False) and not annotation._is_runtime_protocol:
+        return None  # the function asks for what it needs
     origin, inside = get_origin(annotation), get_args(annotation)
     if origin in (Union, types.UnionType):
         return _check_for_union(inside)
@@ -220,6 +219,8 @@ def _sequence_of(kind: Any) -> Check:
     inner = _check_for(kind)
 
     def check(name: str, value: Any) -> Any:
+        if kind is str and isinstance(value, str):
+            return [value]
         if isinstance(value, (str, bytes, Mapping)) or not isinstance(value, Iterable):
             raise InputError(f"{name} must be a list, not {shown(value)}")
         if isinstance(value, np.ndarray) and value.ndim == 0:

@@ -56,7 +56,7 @@ def real_array(name: str, value: Any, shape: tuple[int | None, ...] | None) -> n
         wanted = f"shape ({', '.join(sizes)})"
     try:
         given = np.asarray(value)
-    except (TypeError, ValueError, OverflowError):
+    except Exception:  # an object of anybody's may raise anything
         given = np.asarray(None)
     if given.dtype.kind not in "iuf":
         raise InputError(f"{name} must be an array of numbers of {wanted}")
@@ -77,6 +77,10 @@ def real_array(name: str, value: Any, shape: tuple[int | None, ...] | None) -> n
 def known_names(what: str, given: Iterable[Any], known: Iterable[str]) -> None:
     """Raise `InputError` for the first of ``given`` that is not in ``known``."""
     known = list(known)
+    try:
+        given = list(given)
+    except Exception:
+        raise InputError(f"{what}: names must be a list of text, not {shown(given)}") from None
     for name in given:
         if not isinstance(name, str) or name not in known:
             raise InputError(f"{what} has no {shown(name)}: {nearest_name(name, known)}")

@@ -21,6 +21,7 @@ from cellcrawl.errors import InputError
 from cellcrawl.validation import real_array, real_number, whole_number
 
 FEWEST_NODES = 16
+MOST_NODES = 1_000_000
 _CLOSED = 1e-13  # closure error that rounding leaves
 
 
@@ -162,7 +163,7 @@ class Curve:
     @checked
     def resampled(self, nodes: int) -> Curve:
         """Return the same curve on another number of equally spaced nodes, node 0 in place."""
-        whole_number("Curve nodes", nodes, FEWEST_NODES)
+        whole_number("Curve nodes", nodes, FEWEST_NODES, MOST_NODES)
         winding = 2.0 * math.pi * np.arange(self.nodes) / self.nodes
         wobble = fourier.resample(self.theta - winding, nodes)
         theta = wobble + 2.0 * math.pi * np.arange(nodes) / nodes

@@ -53,6 +53,8 @@ def fourier_amplitude(dataset: xr.Dataset, field: str, k: Any) -> xr.DataArray:
     names = ["x", "y", "theta", "length"] + ([] if field == "radius" else [field])
     run = records_with(dataset, *names)
     wavenumbers = np.atleast_1d(real_array("k", k, None))
+    if wavenumbers.ndim > 1 or not wavenumbers.size:
+        raise InputError("k must be one whole number or a list of them")
     highest = run.sizes["node"] // 2
     if np.any(
         (wavenumbers != np.round(wavenumbers)) | (wavenumbers < 1) | (wavenumbers >= highest)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol, runtime_checkable
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -41,7 +41,6 @@ class FlatSetting(NamedTuple):
         return self.parameters.r_on / (self.parameters.r_on + self.off_rate)
 
 
-@runtime_checkable
 class FlatStart(Protocol):
     """What a start is."""
 

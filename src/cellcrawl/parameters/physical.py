@@ -11,13 +11,12 @@ from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.parameters.dimensionless import DESCRIPTIONS, ELASTICITIES, Parameters
 from cellcrawl.parameters.named import NamedFields
-from cellcrawl.parameters.quantities import magnitude_in, quantity
+from cellcrawl.parameters.quantities import as_written, magnitude_in, quantity
 from cellcrawl.parameters.scales import LARGEST, SAME, SMALLEST, Scales
 from cellcrawl.parameters.temperature import REFERENCE, ActivationEnergies, factors, kelvin
 from cellcrawl.validation import one_of, real_number
 
 _ROUNDING = 1e-12  # relative: a ratio this close to the end of its range is at the end
-_DIGITS = 12  # of a ratio: what is equal on paper is equal, and one run
 
 
 class Measured(NamedTuple):
@@ -257,7 +256,7 @@ class PhysicalParameters(NamedFields):
 
     def _ratio(self, name: str, ratio: _Ratio) -> float:
         """Return a dimensionless parameter; out of range, name the physical values behind it."""
-        value = float(f"{ratio.of(self):.{_DIGITS}g}")
+        value = as_written(ratio.of(self))
         low, high = DESCRIPTIONS[name].low, DESCRIPTIONS[name].high
         nearest = min(max(value, low), high)
         if abs(value - nearest) <= _ROUNDING * nearest:
