@@ -256,7 +256,7 @@ class PhysicalParameters(NamedFields):
 
     def _ratio(self, name: str, ratio: _Ratio) -> float:
         """Return a dimensionless parameter; out of range, name the physical values behind it."""
-        value = as_written(ratio.of(self))
+        value: float = as_written(ratio.of(self))
         low, high = DESCRIPTIONS[name].low, DESCRIPTIONS[name].high
         nearest = min(max(value, low), high)
         if abs(value - nearest) <= _ROUNDING * nearest:
