@@ -219,8 +219,10 @@ def _sequence_of(kind: Any) -> Check:
     inner = _check_for(kind)
 
     def check(name: str, value: Any) -> Any:
-        if kind is str and isinstance(value, str):
-            return [value]
+        if isinstance(kind, type) and isinstance(value, kind):
+            value = [value]  # one is a list of one
+        elif isinstance(value, np.ndarray) and value.dtype == object:
+            value = value.ravel()  # axes as plt.subplots gives them
         if isinstance(value, (str, bytes, Mapping)) or not isinstance(value, Iterable):
             raise InputError(f"{name} must be a list, not {shown(value)}")
         if isinstance(value, np.ndarray) and value.ndim == 0:

@@ -106,7 +106,7 @@ def test_help_shows_its_examples_line_by_line(command, capsys):
 
 
 def test_speeds_that_were_not_reached_are_no_numbers():
-    assert _times(float("nan")) == "-"
+    assert _times(float("nan")) == "not reached"
     assert _times(2.04) == "2.0x"
 
 

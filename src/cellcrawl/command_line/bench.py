@@ -146,8 +146,3 @@ def _cell(value: Any) -> str:
     if isinstance(value, float):
         return "-" if math.isnan(value) else f"{value:.3g}"
     return str(value)
-
-
-def _times(ratio: float) -> str:
-    """Return a ratio of speeds; NaN where a solver did not reach that error."""
-    return "-" if math.isnan(ratio) else f"{ratio:.1f}x"
