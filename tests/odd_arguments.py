@@ -279,7 +279,7 @@ def _calls(folder: Path) -> Iterator[Call]:
     )  # fmt: skip
     yield call(plot.diagram, sweep=sweep, x="r_on", y="zeta_1", legend=True, ax=ax())
     yield call(
-        plot.measure_map, sweep=sweep, measure="tension", x="r_on", y="zeta_1", colorbar=True,
+        plot.measure_map, sweep=sweep, measure="area", x="r_on", y="zeta_1", colorbar=True,
         ax=ax(),
     )  # fmt: skip
     yield call(

@@ -223,13 +223,14 @@ def _sequence_of(kind: Any) -> Check:
             value = [value]  # one is a list of one
         elif isinstance(value, np.ndarray) and value.dtype == object:
             value = value.ravel()  # axes as plt.subplots gives them
-        if isinstance(value, (str, bytes, Mapping)) or not isinstance(value, Iterable):
-            raise InputError(f"{name} must be a list, not {shown(value)}")
-        if isinstance(value, np.ndarray) and value.ndim == 0:
-            raise InputError(f"{name} must be a list, not {shown(value)}")
+        try:
+            if isinstance(value, (str, bytes, Mapping)):
+                raise TypeError
+            items = list(value)
+        except Exception:
+            raise InputError(f"{name} must be a list, not {shown(value)}") from None
         if inner is None:
-            return value
-        items = list(value)
+            return value if isinstance(value, Sequence) else items
         return [inner(f"{name}[{place}]", item) for place, item in enumerate(items)]
 
     return check
