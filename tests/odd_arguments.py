@@ -96,6 +96,7 @@ def _calls(folder: Path) -> Iterator[Call]:
         keep="tracks", options={"rtol": 1e-2},
     )  # fmt: skip
     grid = sweep.grid
+    late = cc.sweep(grid, folder / "late", InProcess(), t_end=5.3)  # has means of the measures
     t, x, y = (long[name].values for name in ("time", "centroid_x", "centroid_y"))
     one, observe, plot, linear = cc.one_dimensional, cc.observables, cc.plot, cc.linear
     square = [[0.9, 0.9], [-0.9, 0.9], [-0.9, -0.9], [0.9, -0.9]]
@@ -279,7 +280,7 @@ def _calls(folder: Path) -> Iterator[Call]:
     )  # fmt: skip
     yield call(plot.diagram, sweep=sweep, x="r_on", y="zeta_1", legend=True, ax=ax())
     yield call(
-        plot.measure_map, sweep=sweep, measure="area", x="r_on", y="zeta_1", colorbar=True,
+        plot.measure_map, sweep=late, measure="area", x="r_on", y="zeta_1", colorbar=True,
         ax=ax(),
     )  # fmt: skip
     yield call(
