@@ -168,10 +168,7 @@ def _number(name: str, value: Any) -> float:
         raise InputError(f"{name} must be a number, not {shown(value)}")
     if value != value:
         raise InputError(f"{name} = nan is out of range: it must be a number")
-    try:
-        return float(value)
-    except OverflowError:
-        raise InputError(f"{name} must be a number, not {shown(value)}") from None
+    return cast(float, value)
 
 
 def _complex(name: str, value: Any) -> complex:
@@ -238,9 +235,14 @@ def _sequence_of(kind: Any) -> Check:
 
 def _numbers(kinds: tuple[Any, ...]) -> Check:
     """Hold a tuple of numbers to its length."""
+    count = {2: "two", 3: "three"}.get(len(kinds), str(len(kinds)))
+    wanted = f"{count} {'whole ' if set(kinds) == {int} else ''}numbers"
 
     def check(name: str, value: Any) -> Any:
-        numbers = real_array(name, value, (len(kinds),)).tolist()
+        try:
+            numbers = real_array(name, value, (len(kinds),)).tolist()
+        except InputError:
+            raise InputError(f"{name} must be {wanted}, not {shown(value)}") from None
         return tuple(
             whole_number(name, number, -(2**53)) if kind is int else number
             for kind, number in zip(kinds, numbers, strict=True)

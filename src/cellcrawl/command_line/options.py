@@ -12,7 +12,6 @@ import click
 from cellcrawl.arguments import file_path
 from cellcrawl.errors import InputError, StorageError
 from cellcrawl.parameters import DESCRIPTIONS, ELASTICITIES, Parameters
-from cellcrawl.validation import shown
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -70,9 +69,7 @@ def save_picture(figure: Any, path: Path, dpi: int) -> None:
     file_path("--output", path)
     kinds = figure.canvas.get_supported_filetypes()
     if path.suffix[1:].lower() not in kinds:
-        raise InputError(
-            f"cannot write {shown(str(path), 300)}: a picture's name ends in .png, .pdf or .svg"
-        )
+        raise InputError(f"cannot write {path}: a picture's name ends in .png, .pdf or .svg")
     try:
         figure.savefig(path, dpi=dpi)
     except (OSError, ValueError) as error:
