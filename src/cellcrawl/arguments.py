@@ -200,8 +200,12 @@ def _text(name: str, value: Any) -> str:
 
 
 def _instance_of(kind: type) -> Check:
-    word = "a table of names and values" if kind is Mapping else kind.__name__
-    if kind is not Mapping and not word.endswith("s"):
+    package, word = kind.__module__.partition(".")[0], kind.__name__
+    if kind is Mapping:
+        word = "a table of names and values"
+    elif package != __name__.partition(".")[0]:
+        word = f"{package}'s {word}"
+    elif not word.endswith("s"):
         word = f"{'an' if word[0] in 'AEIOU' else 'a'} {word}"
 
     def check(name: str, value: Any) -> Any:

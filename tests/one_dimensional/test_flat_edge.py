@@ -265,7 +265,7 @@ def dented(nodes: int, depth: float) -> dict[str, np.ndarray]:
         (lambda: od.FlatNoise(waves=0), "waves = 0"),
         (lambda: od.front_speed(P, 300.0), "one uniform state"),
         (lambda: od.flat_growth_rates(P, math.nan), "k is not finite"),
-        (lambda: od.wave_velocity(P), "must be a Dataset"),
+        (lambda: od.wave_velocity(P), "must be xarray's Dataset"),
     ],
 )
 def test_mistakes_are_one_line(make, said):
