@@ -185,6 +185,17 @@ def _calls(folder: Path) -> Iterator[Call]:
     yield call(linear.curves_in, stability=stability, k=2)
     yield call(linear.hopf_points, parameters=p, k=2, r_on=(1.0, 100.0))
     yield call(linear.oscillation_onset, parameters=p, k=2, r_on=(1.0, 100.0))
+    # microscopy
+    observed = cc.observe(run, pixel=0.05)
+    cells = folder / "cells.csv"
+    cells.write_text("track,t,x,y\n" + "".join(f"1,{a},{b},{c}\n" for a, b, c in zip(t, x, y)))
+    read = cc.read_tracks(cells)
+    yield call(cc.observe, run=run, pixel=0.1, error=0.0, frame=0.2, edge_error=0.0, seed=1)
+    yield call(
+        cc.read_tracks, path=cells, columns=None, frame_interval=None, pixel_size=None,
+        image_coordinates=False,
+    )  # fmt: skip
+    yield call(cc.write_tracks, path=folder / "out.csv", tracks=read, form=None)
     # observables
     for name in observe.__all__:
         function = getattr(observe, name)
@@ -193,11 +204,20 @@ def _calls(folder: Path) -> Iterator[Call]:
         usual: Arguments = {
             "dataset": long, "run": t, "x": x, "y": y, "field": "bound_fraction", "k": [1, 2],
             "origin": "front", "after": 1.0, "longest": 5.0, "smallest": 0.3,
-            "kind": "direction", "t": t, "values": x,
+            "kind": "direction", "t": t, "values": x, "exposure": 0.0, "tracks": read,
+            "drift": observe.shared_drift(read), "outlines": observed.outlines, "nodes": 64,
+            "tolerance": 0.1, "modes": 2, "points": 32, "normalise": True, "reflect": False,
         }  # fmt: skip
         if name == "fourier_amplitude":
             usual["dataset"] = run
         known = inspect.signature(function).parameters
+        if name == "shape_modes":
+            series = observe.edge_series(observed.outlines)
+            given = {n: usual[n] for n in known if n in usual}
+            yield call(
+                lambda one, **named: observe.shape_modes(one, **named), name, one=series, **given
+            )
+            continue
         yield call(function, **{name: usual[name] for name in known})
         if "run" in known:
             yield call(function, f"{function.__name__} of a run", run=long)

@@ -122,9 +122,11 @@ def _check_for(annotation: Any) -> Check | None:
 
 def _check_for_union(kinds: tuple[Any, ...]) -> Check | None:
     others = [kind for kind in kinds if kind is not types.NoneType]
-    checks = [_check_for(kind) for kind in others if kind is not Path]
-    if Path in others and str in others:  # a file's name
-        checks[[kind for kind in others if kind is not Path].index(str)] = file_path_as_given
+    if str in others and any(kind is Path or get_origin(kind) is os.PathLike for kind in others):
+        others = [kind for kind in others if kind is not Path and get_origin(kind) is None]
+        checks = [file_path_as_given if kind is str else _check_for(kind) for kind in others]
+    else:
+        checks = [_check_for(kind) for kind in others]
     if None in checks:
         return None
     check = _any_of(cast(list[Check], checks))

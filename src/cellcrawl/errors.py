@@ -23,6 +23,10 @@ class MissingExtraError(CellcrawlError, ImportError):
     """An optional dependency is needed; the message says which extra installs it."""
 
 
+class OutlineChangedWarning(UserWarning):
+    """An outline was changed so that the model can hold it; the message says how."""
+
+
 def what_would_help(error: OSError, reason: str = "") -> str:
     """Return when a write that failed can succeed: "once there is room" only for a full disk.
 

@@ -44,17 +44,22 @@ _KINDS = ("summary", "path", "kymographs", "time_series")
     help="Resolution of a .png.",
 )
 def plot(file: Path, kind: str, origin: str, output: Path | None, dpi: int) -> None:
-    """Draw the run in FILE.
+    """Draw the run in FILE, or the tracks in it as `cellcrawl tracks` does.
 
     \b
     Examples
       cellcrawl plot run.nc                                the summary page
+      cellcrawl plot cells.csv                             a sheet of tracks
       cellcrawl plot run.nc --kind path --output path.pdf  contours along the cell's path
       cellcrawl plot run.nc --kind kymographs --origin material
     """
     import cellcrawl as cc
+    from cellcrawl.command_line.tracks import RUNS, draw_sheet
 
     one_of("--kind", kind, _KINDS)
+    if file.suffix not in RUNS and file.is_file():
+        draw_sheet(file, output, dpi)
+        return
     target = output or file.with_name(f"{kind}.png")
     with cc.open_run(file) as dataset:
         draw: Callable[..., Any] = getattr(cc.plot, kind)

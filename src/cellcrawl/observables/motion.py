@@ -9,7 +9,7 @@ import xarray as xr
 
 from cellcrawl.arguments import checked
 from cellcrawl.observables.inputs import records_with
-from cellcrawl.observables.track import Track, as_track
+from cellcrawl.observables.track import Track, as_track, units_of
 
 AT_REST = 1e-6
 """A cell slower than this fraction of the run's highest speed has no heading."""
@@ -20,9 +20,10 @@ _ROUNDING = 1e-12
 def centroid_velocity(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
     """Return the velocity of the centroid.
 
-    Of a run: that of the area centroid, from the edge of each record alone, ``dc/dt = (1/A) *
-    integral of (x - c) U ds`` with the outward normal velocity ``U``: exact, no difference in time
-    is taken. Of a track: differences in time, central where there are neighbours.
+    Of outlines (`edge_series`) and of a track: differences in time, central where there are
+    neighbours. Of a run: that of the area centroid, from the edge of each record alone,
+    ``dc/dt = (1/A) * integral of (x - c) U ds`` with the outward normal velocity ``U``: exact, no
+    difference in time is taken.
 
     Parameters
     ----------
@@ -49,6 +50,8 @@ def centroid_velocity(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
     """
     if x is not None or not isinstance(run, xr.Dataset):
         return _velocity_of_track(as_track(run, x, y))
+    if run.attrs.get("kind") == "outlines":
+        return _velocity_of_track(as_track(run))
     records_with(run, "x", "y", "normal_velocity", "area", "length", "centroid_x", "centroid_y")
     outward = run["normal_velocity"].values
     per_area = (run["length"] / run["area"]).values
@@ -170,7 +173,10 @@ def turning_rate(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
         records_with(run, at_least=2)
     angle = heading(run, x, y)
     rate = np.gradient(angle.values, angle["time"].values)
-    units = "rad k_off0" if isinstance(run, xr.Dataset) else ""
+    units = ""
+    if isinstance(run, xr.Dataset):
+        time = units_of(run)[1]
+        units = "rad k_off0" if time == "1/k_off0" else f"rad/{time}" if time else ""
     return (
         angle.copy(data=rate)
         .rename("turning_rate")
@@ -185,8 +191,13 @@ def _velocity_of_track(track: Track) -> xr.DataArray:
         {"time": track.t, "component": ["x", "y"]},
         ("time", "component"),
         "centroid_velocity",
-        {"long_name": "velocity of the centroid", "units": ""},
+        {"long_name": "velocity of the centroid", "units": _over(track)},
     )
+
+
+def _over(track: Track) -> str:
+    both = track.length_units and track.time_units
+    return f"{track.length_units}/{track.time_units}" if both else ""
 
 
 def _size(velocity: np.ndarray) -> np.ndarray:

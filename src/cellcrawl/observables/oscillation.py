@@ -15,7 +15,7 @@ from cellcrawl.observables.smoothing import smooth
 from cellcrawl.observables.track import Track, as_track
 from cellcrawl.observables.turns import Swings, crossing_times, swings_of
 from cellcrawl.records import EqualWithNaN
-from cellcrawl.validation import real_array, real_number
+from cellcrawl.validation import real_array, real_number, without_masked
 
 _TRANSIENT = 0.25  # part of the time left out at the beginning unless said otherwise
 _HYSTERESIS = 0.3  # of the range: smaller ups and downs are ripples
@@ -73,6 +73,7 @@ def oscillation(t: Any, values: Any, *, after: float | None = None) -> Oscillati
     faster one is found. Any signal has ups and downs, noise too: trust the period only where the
     irregularity is well below 0.3 and there are several cycles.
     """
+    t, values = without_masked(t, values)
     signal = as_track(
         t, values, np.zeros_like(real_array("values", values, (None,))), at_least=_FEWEST
     )
@@ -161,7 +162,7 @@ def lateral_oscillation(
     when = times - times.mean()
     slope = float(when @ heading) / float(when @ when)
     across = speed * np.sin(heading - heading.mean() - slope * when)
-    steps = 0.5 * (across[1:] + across[:-1]) * np.diff(times)
+    steps = 0.5 * (across[1:] + across[:-1]) * smoothed.step
     return oscillation(times, np.concatenate([[0.0], np.cumsum(steps)]), after=float(times[0]))
 
 

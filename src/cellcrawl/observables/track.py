@@ -2,41 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from cellcrawl.errors import InputError
+from cellcrawl.microscopy.track import Track
 from cellcrawl.observables.inputs import records_with
-from cellcrawl.validation import real_array
+from cellcrawl.validation import real_array, without_masked
 
-
-@dataclass(frozen=True, eq=False)
-class Track:
-    """Positions of a cell over time; the units are those of whoever measured them.
-
-    Attributes
-    ----------
-    t : ndarray, shape (record,)
-        Times, rising.
-    x, y : ndarray, shape (record,)
-        Position of the centroid.
-    length_units, time_units : str
-        Names of the units, "" where they are the user's own.
-    """
-
-    t: np.ndarray
-    x: np.ndarray
-    y: np.ndarray
-    length_units: str = ""
-    time_units: str = ""
-
-    @property
-    def duration(self) -> float:
-        """Time from the first record to the last."""
-        return float(self.t[-1] - self.t[0])
+__all__ = ["Track", "as_track", "units_of"]
 
 
 def as_track(run: Any, x: Any = None, y: Any = None, *, at_least: int = 2) -> Track:
@@ -47,7 +23,8 @@ def as_track(run: Any, x: Any = None, y: Any = None, *, at_least: int = 2) -> Tr
     run : Dataset, Track or array_like, shape (record,)
         A run, or the times of a track; times must rise and need not be even.
     x, y : array_like, shape (record,), optional
-        Positions at these times; left out with a run.
+        Positions at these times; left out with a run. Records that are masked in any of the three
+        (NumPy masked arrays) are left out.
     at_least : int
         The fewest records that will do.
 
@@ -68,6 +45,7 @@ def as_track(run: Any, x: Any = None, y: Any = None, *, at_least: int = 2) -> Tr
     else:
         if x is None or y is None:
             raise InputError("a run is a Dataset; a track needs times, x and y, arrays of one size")
+        run, x, y = without_masked(run, x, y)
         times = real_array("t", run, (None,))
         track = Track(times, _positions("x", x, times.size), _positions("y", y, times.size))
     if track.t.size < at_least:
@@ -83,7 +61,14 @@ def _track_of(run: xr.Dataset, at_least: int) -> Track:
     t, x, y = (
         real_array(name, run[name].values, (None,)) for name in ("time", "centroid_x", "centroid_y")
     )
-    return Track(t, x, y, length_units="R_0", time_units="1/k_off0")
+    return Track(t, x, y, *units_of(run))
+
+
+def units_of(run: xr.Dataset) -> tuple[str, str]:
+    """Return the units of length and time: the model's, or those of outlines."""
+    if run.attrs.get("kind") == "outlines":
+        return str(run.attrs.get("length_units", "")), str(run.attrs.get("time_units", ""))
+    return "R_0", "1/k_off0"
 
 
 def _positions(name: str, values: Any, size: int) -> np.ndarray:
