@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Iterable
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from cellcrawl.command_line.options import say
+from cellcrawl.command_line.options import make_folder, save_picture, say
 from cellcrawl.validation import one_of
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ _KINDS = (
 def bench(
     kind: str, quick: bool, calibrate: bool, output: Path | None, references: Path | None
 ) -> int:
-    r"""Measure accuracy and speed on this machine.
+    """Measure accuracy and speed on this machine.
 
     \b
     KIND is one of
@@ -76,6 +77,8 @@ def bench(
     from cellcrawl.bench.references import References
 
     one_of("KIND", kind, _KINDS)
+    if output is not None:
+        make_folder(output)  # before measuring for minutes
     if calibrate:
         one_of("KIND with --calibrate", kind, ("modes",))
     known = References(references)
@@ -88,9 +91,9 @@ def bench(
     if output is not None:
         machine.write(output / f"{kind}.json", result.data)
         if result.figure is not None:
-            result.figure.savefig(output / f"{kind}.png", dpi=160)
+            save_picture(result.figure, output / f"{kind}.png", 160)
         for name, figure in (result.more or {}).items():
-            figure.savefig(output / f"{name}.png", dpi=160)
+            save_picture(figure, output / f"{name}.png", 160)
         say(f"results  {output}")
     return 0
 
@@ -113,7 +116,7 @@ def _work_precision(quick: bool, known: References) -> _Result:
         for solver in dict.fromkeys(row.solver for row in part if row.solver != "adaptive"):
             shown = {e: wp.speed_up(part, solver, e) for e in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)}
             ratios.append({"case": case, "t_end": t_end, "solver": solver, "times": shown})
-            values = "  ".join(f"{e:g}: {ratio:.1f}x" for e, ratio in shown.items())
+            values = "  ".join(f"{e:g}: {_times(ratio)}" for e, ratio in shown.items())
             say(f"{case}, t = {t_end:g}: adaptive is faster than {solver} at error {values}")
     return _Result({"rows": [row._asdict() for row in rows], "ratios": ratios}, wp.plot(rows))
 
@@ -222,5 +225,11 @@ def _table(kind: Any, rows: Iterable[Any]) -> Iterable[Any]:
         yield row
 
 
+def _times(ratio: float) -> str:
+    return f"{ratio:.1f}x" if math.isfinite(ratio) else "not reached"
+
+
 def _cell(value: Any) -> str:
-    return f"{value:.3g}" if isinstance(value, float) else str(value)
+    if isinstance(value, float):
+        return "-" if math.isnan(value) else f"{value:.3g}"
+    return str(value)

@@ -8,8 +8,7 @@ from typing import Any
 
 import click
 
-from cellcrawl.command_line.options import say, wants_progress
-from cellcrawl.errors import InputError
+from cellcrawl.command_line.options import save_picture, say, wants_progress
 from cellcrawl.validation import one_of
 
 _KINDS = ("summary", "path", "kymographs", "time_series")
@@ -66,11 +65,7 @@ def plot(file: Path, kind: str, origin: str, output: Path | None, dpi: int) -> N
         draw: Callable[..., Any] = getattr(cc.plot, kind)
         figure = draw(dataset, origin=origin) if kind == "kymographs" else draw(dataset)
         figure = getattr(figure, "figure", figure)
-        try:
-            figure.savefig(target, dpi=dpi)
-        except (OSError, ValueError) as error:
-            raise InputError(f"cannot write {target}: {error}") from None
-    say(f"picture  {target}")
+        save_picture(figure, target, dpi)
 
 
 @click.command()

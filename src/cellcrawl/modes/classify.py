@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.modes import rule
 from cellcrawl.modes.confidence import trust
 from cellcrawl.modes.evidence import Evidence, gather
@@ -30,6 +31,7 @@ _PREFER_EARLY = 0.3  # a start that leaves out the part p must fit better by thi
 _FEW_TURNS = 3  # a track that has turned less often, and less than once round, may be any mode
 
 
+@checked
 def classify(dataset: xr.Dataset, *, use_size: bool = True) -> Classification:
     """Name the motility mode of a run.
 
@@ -66,6 +68,7 @@ def classify(dataset: xr.Dataset, *, use_size: bool = True) -> Classification:
     return _classify(track, radius if use_size else None)
 
 
+@checked
 def classify_track(
     t: Any, x: Any, y: Any, *, cell_radius: float | None = None, status: str = "completed"
 ) -> Classification:
@@ -106,6 +109,7 @@ def classify_track(
     return _classify(as_track(t, x, y, at_least=FEWEST_RECORDS), cell_radius)
 
 
+@checked
 def is_long_enough(dataset: xr.Dataset) -> bool:
     """Whether a run of the model lasts `SHORTEST_RUN` and has the records to show its mode."""
     times = dataset["time"].values

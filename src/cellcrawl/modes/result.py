@@ -6,12 +6,14 @@ import math
 from dataclasses import asdict, dataclass
 from typing import Any, Final
 
+from cellcrawl.records import EqualWithNaN
+
 MODES: Final = ("gliding", "rotational", "zigzag", "other", "stationary", "fragmented")
 """Modes of a single run; a set of runs can also be "mixed"."""
 
 
-@dataclass(frozen=True)
-class Measures:
+@dataclass(frozen=True, eq=False)
+class Measures(EqualWithNaN):
     """What the rule looks at; angles in rad, times and lengths in the units of the track.
 
     Attributes
@@ -84,8 +86,8 @@ class Measures:
     heading_error: float = math.nan
 
 
-@dataclass(frozen=True)
-class Classification:
+@dataclass(frozen=True, eq=False)
+class Classification(EqualWithNaN):
     """The mode of one run, and how sure.
 
     Attributes

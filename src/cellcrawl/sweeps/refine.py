@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import DESCRIPTIONS
 from cellcrawl.sweeps.driver import Sweeping
@@ -38,6 +39,7 @@ class Cell(NamedTuple):
         return tuple(Cell(i, j, half) for i, j in Cell(self.i, self.j, half).corners)
 
 
+@checked
 def refine(
     grid: Any,
     output: str | Path = "diagram",
@@ -130,7 +132,7 @@ class Lattice:
 
     def learn(self, sweep: Sweep) -> None:
         """Take note of the modes found."""
-        columns = [*DESCRIPTIONS, "mode", "confidence"]
+        columns = [*DESCRIPTIONS, "mode", "status", "confidence"]
         found = plane(sweep.table(columns), *self._names)
         where = [{value: k for k, value in enumerate(values)} for values in self._values]
         modes = majority(found)
