@@ -188,7 +188,9 @@ def _calls(folder: Path) -> Iterator[Call]:
     # microscopy
     observed = cc.observe(run, pixel=0.05)
     cells = folder / "cells.csv"
-    cells.write_text("track,t,x,y\n" + "".join(f"1,{a},{b},{c}\n" for a, b, c in zip(t, x, y)))
+    cells.write_text(
+        "track,t,x,y\n" + "".join(f"1,{a},{b},{c}\n" for a, b, c in zip(t, x, y, strict=True))
+    )
     read = cc.read_tracks(cells)
     yield call(cc.observe, run=run, pixel=0.1, error=0.0, frame=0.2, edge_error=0.0, seed=1)
     yield call(
