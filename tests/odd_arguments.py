@@ -220,6 +220,8 @@ def _calls(folder: Path) -> Iterator[Call]:
                 lambda one, **named: observe.shape_modes(one, **named), name, one=series, **given
             )
             continue
+        if name == "edge_series":
+            known = [n for n in known if n != "t"]  # the outlines know theirs
         yield call(function, **{name: usual[name] for name in known})
         if "run" in known:
             yield call(function, f"{function.__name__} of a run", run=long)
