@@ -62,7 +62,7 @@ def test_a_broad_tail_and_sharp_corners_stay_as_they_are():
     for xy in (cell(12, 60), cell(), np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]])):
         assert cc.FromOutline(xy, radius=1.0).changes == ()
     thin = np.column_stack([10 * np.cos(t := np.linspace(0, 2 * np.pi, 400)[:-1]), np.sin(t)])
-    assert cc.FromOutline(thin).changes == ()
+    assert cc.FromOutline(thin, radius=1.0).changes == ()
 
 
 def test_a_figure_of_eight_is_still_refused():
