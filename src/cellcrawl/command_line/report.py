@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import xarray as xr
 
 from cellcrawl.command_line.main import CANCELLED, RUN_FAILED
@@ -21,7 +22,7 @@ def report_run(dataset: xr.Dataset) -> None:
     diagnostics = decode_attribute(dataset, "diagnostics")
     say(
         f"cell     r_on = {parameters['r_on']:g}, zeta_1 = {parameters['zeta_1']:g}, "
-        f"{parameters['elasticity']} tension law, seed {attributes['seed']}"
+        f"{parameters['elasticity']} tension law, {_start(dataset)}"
     )
     say(f"run      {attributes['status']}: {attributes['status_message']}")
     say(
@@ -41,14 +42,27 @@ def _report_motion(dataset: xr.Dataset) -> None:
     x, y = late["centroid_x"].values, late["centroid_y"].values
     speed = observables.speed(late).values
     tension = late["tension"].values
-    turned = observables.heading(late).values
+    headings = observables.heading(late).values
+    headings = headings[np.isfinite(headings)]
     start, end = float(late["time"][0]), float(late["time"][-1])
+    turned = (
+        f"turned {math.degrees(headings[-1] - headings[0]):+.0f} degrees in all"
+        if headings.size
+        else "at rest"
+    )
     say(
         f"motion   from t = {start:g} to {end:g}: speed {speed.mean():.3f}, "
-        f"net distance {math.hypot(x[-1] - x[0], y[-1] - y[0]):.2f}, "
-        f"turned {math.degrees(turned[-1] - turned[0]):+.0f} degrees in all, "
+        f"net distance {math.hypot(x[-1] - x[0], y[-1] - y[0]):.2f}, {turned}, "
         f"tension {tension.min():.0f} to {tension.max():.0f}"
     )
+
+
+def _start(dataset: xr.Dataset) -> str:
+    """Say what the run started from."""
+    seed = int(dataset.attrs.get("seed", -1))
+    if seed >= 0:
+        return f"seed {seed}"
+    return f"start {decode_attribute(dataset, 'start').get('kind', 'of your own')}"
 
 
 def _report_mode(dataset: xr.Dataset) -> None:
@@ -59,7 +73,8 @@ def _report_mode(dataset: xr.Dataset) -> None:
         return
     found = classify(dataset)
     if torn or is_long_enough(dataset):
-        say(f"mode     {found.mode}, confidence {found.confidence:.2f}: {found.summary()}")
+        detail = f" ({found.detail})" if found.detail else ""
+        say(f"mode     {found.mode}{detail}, confidence {found.confidence:.2f}: {found.summary()}")
     else:
         say(f"mode     {found.mode} so far; a run to t = {SHORTEST_RUN:g} or more can tell")
 

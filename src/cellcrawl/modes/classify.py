@@ -11,10 +11,12 @@ import xarray as xr
 
 from cellcrawl.modes import rule
 from cellcrawl.modes.measures import measure, measure_rest, onset
-from cellcrawl.modes.result import Classification, Measures
+from cellcrawl.modes.result import STEADY_SPIN, Classification, Measures
 from cellcrawl.observables.inputs import records_with
 from cellcrawl.observables.smoothing import SmoothTrack, smooth
 from cellcrawl.observables.track import Track, as_track
+from cellcrawl.simulation.events import STATUSES
+from cellcrawl.simulation.units import units_of
 from cellcrawl.validation import real_number
 
 FEWEST_RECORDS = 12
@@ -26,6 +28,8 @@ _LATER_STARTS = (0.0, 1 / 9, 2 / 9, 3 / 9)
 _PREFER_EARLY = 0.3  # a start that leaves out the part p must fit better by this times p
 _FEW_TURNS = 3  # a track that has turned less often, and less than once round, may be any mode
 _UNTOLD = 0.6  # the confidence it can have
+_CUT_SHORT = 0.5  # the confidence that a run which failed can have
+_FAILURES = tuple(set(STATUSES) - {"completed", "fragmented", "interrupted", "running"})
 
 
 def classify(dataset: xr.Dataset, *, use_size: bool = True) -> Classification:
@@ -54,14 +58,16 @@ def classify(dataset: xr.Dataset, *, use_size: bool = True) -> Classification:
     -----
     The modes are those of a cell left to itself: a schedule that changes parameters on the way
     makes a track with several modes, which is "other". A run of less than about 50 may not have
-    come to its mode. A run that ended for another reason than its time is named by what there is.
+    come to its mode. A run that a failure ended (outside the model, or unresolved) is named by what
+    there is, says so in ``doubt``, and its confidence is at most 0.5.
     """
     run = records_with(dataset, "centroid_x", "centroid_y", "area")
     if run.attrs.get("status") == "fragmented":
         return _fragmented()
     track = as_track(run, at_least=FEWEST_RECORDS)
     radius = math.sqrt(float(np.median(run["area"].values)) / math.pi)
-    return _classify(track, radius if use_size else None)
+    found = _classify(track, radius if use_size else None)
+    return _ended(found, str(run.attrs.get("status", "completed")), float(track.t[-1]))
 
 
 def classify_track(
@@ -78,7 +84,8 @@ def classify_track(
         outline is "other" and one that moves less than a twentieth of it is "stationary"; without
         it only the form of the track counts.
     status : str
-        How the run ended, as in a Dataset's attributes: "fragmented" is a mode of its own.
+        How the run ended, as in a Dataset's attributes: "fragmented" is a mode of its own, and one
+        that says it failed lowers the confidence to 0.5 at most.
 
     Returns
     -------
@@ -101,13 +108,15 @@ def classify_track(
         return _fragmented()
     if cell_radius is not None:
         real_number("cell_radius", cell_radius, 0.0, math.inf, open_low=True)
-    return _classify(as_track(t, x, y, at_least=FEWEST_RECORDS), cell_radius)
+    track = as_track(t, x, y, at_least=FEWEST_RECORDS)
+    return _ended(_classify(track, cell_radius), status, float(track.t[-1]))
 
 
 def is_long_enough(dataset: xr.Dataset) -> bool:
     """Whether a run of the model lasts `SHORTEST_RUN` and has the records to show its mode."""
-    times = dataset["time"].values
-    return times.size >= FEWEST_RECORDS and float(times[-1] - times[0]) >= SHORTEST_RUN
+    times, one = dataset["time"].values, units_of(dataset).one("time")
+    long = float(times[-1] - times[0]) >= SHORTEST_RUN * (one if math.isfinite(one) else 0.0)
+    return times.size >= FEWEST_RECORDS and long
 
 
 def _classify(track: Track, cell_radius: float | None) -> Classification:
@@ -132,6 +141,15 @@ def _classify(track: Track, cell_radius: float | None) -> Classification:
         best.measures, extent=still.extent, late_extent=still.late_extent, disorder=still.disorder
     )
     return replace(best, confidence=min(best.confidence, clear), measures=seen)
+
+
+def _ended(found: Classification, status: str, time: float) -> Classification:
+    """Return the result with what it is worth if a failure ended the run: it saw a beginning."""
+    if status not in _FAILURES:
+        return found
+    words = f"the run ended {status} at t = {time:.4g}"
+    doubt = "; ".join(part for part in (words, found.doubt) if part)
+    return replace(found, confidence=min(found.confidence, _CUT_SHORT), doubt=doubt)
 
 
 def _score(result: Classification, later: float) -> float:
@@ -159,6 +177,9 @@ def _apply_rule(track: SmoothTrack, start: int, cell_radius: float | None) -> Cl
     )
     doubt = f"not {nearest}: {min(conditions[nearest], key=_fit).words}"
     sure = 1.0 - fits[mode]
+    *turning, circle = conditions["rotational"]
+    if cell_radius is not None and min(map(_fit, turning)) >= 0.5 > circle.fit:
+        return Classification("other", sure, fits, found, doubt, STEADY_SPIN)
     if found.swings < _FEW_TURNS and abs(found.turned) < 2.0 * math.pi:
         sure, doubt = min(sure, _UNTOLD), "it turns too few times to tell"
     return Classification("other", sure, fits, found, doubt)

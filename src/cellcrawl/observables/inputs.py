@@ -6,6 +6,7 @@ import xarray as xr
 
 from cellcrawl.errors import InputError, nearest_name
 from cellcrawl.simulation.dataset import FIELDS, TIME
+from cellcrawl.simulation.units import units_of
 
 EDGE_FIELDS = tuple(name for name, field in FIELDS.items() if "node" in field.dims)
 """The fields that live on the edge, one value a node."""
@@ -30,6 +31,7 @@ def records_with(dataset: xr.Dataset, *names: str, at_least: int = 1) -> xr.Data
         raise InputError(
             f"this run has {records} records in time: at least {wanted_records} needed"
         )
+    units_of(dataset)
     return dataset
 
 

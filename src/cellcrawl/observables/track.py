@@ -10,6 +10,7 @@ import xarray as xr
 
 from cellcrawl.errors import InputError
 from cellcrawl.observables.inputs import records_with
+from cellcrawl.simulation.units import units_of
 from cellcrawl.validation import real_array
 
 
@@ -83,7 +84,8 @@ def _track_of(run: xr.Dataset, at_least: int) -> Track:
     t, x, y = (
         real_array(name, run[name].values, (None,)) for name in ("time", "centroid_x", "centroid_y")
     )
-    return Track(t, x, y, length_units="R_0", time_units="1/k_off0")
+    units = units_of(run)
+    return Track(t, x, y, length_units=units.label("length"), time_units=units.label("time"))
 
 
 def _positions(name: str, values: Any, size: int) -> np.ndarray:

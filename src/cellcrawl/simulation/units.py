@@ -1,0 +1,133 @@
+"""The units of a run's Dataset, read from the data: dimensionless, in SI, or in micrometres.
+
+Variables carry their unit in ``attrs["units"]``. A run leaves the solver without dimension;
+`Scales.dataset` puts it into SI, and pictures show SI in micrometres.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import xarray as xr
+
+from cellcrawl.errors import InputError
+from cellcrawl.parameters.scales import KINDS, Scales
+from cellcrawl.simulation.dataset import FIELDS, TIME
+
+_MICRO: Final[dict[str, tuple[str, float]]] = {
+    "m": ("um", 1e6),
+    "m^2": ("um^2", 1e12),
+    "1/m": ("1/um", 1e-6),
+    "m/s": ("um/s", 1e6),
+    "m^2/s": ("um^2/s", 1e12),
+    "N/m": ("pN/um", 1e6),
+}
+"""SI units that are unwieldy for a cell: what is written instead, and how many make one."""
+SYSTEMS: Final = ("dimensionless", "SI", "micrometres")
+_KIND_OF: Final = {kind.label: name for name, kind in KINDS.items()}
+_BARE: Final = ("", "1", "rad", "dimensionless", None)  # the same in every system, or not said
+
+
+@dataclass(frozen=True)
+class Units:
+    """The system of units of a dataset, and its scales where they are known.
+
+    Attributes
+    ----------
+    system : str
+        One of `SYSTEMS`.
+    scales : Scales or None
+        What one dimensionless unit is in SI; None for a dimensionless dataset, or if unknown.
+    """
+
+    system: str
+    scales: Scales | None = None
+
+    def label(self, kind: str) -> str:
+        """Return the unit of a kind of quantity ("length", "velocity", ...; see `KINDS`)."""
+        return _label(kind, self.system)
+
+    def one(self, kind: str) -> float:
+        """Return one dimensionless unit of that kind in these units; NaN if scales are unknown."""
+        if self.system == "dimensionless":
+            return 1.0
+        if self.scales is None:
+            return math.nan
+        return KINDS[kind].size(self.scales) * _factor(kind, self.system)
+
+
+DIMENSIONLESS: Final = Units("dimensionless")
+
+
+def units_of(dataset: xr.Dataset) -> Units:
+    """Return the units a dataset is in, from what its variables say.
+
+    Raises
+    ------
+    InputError
+        If a variable is in a unit that a run cannot have, or two are in different systems.
+    """
+    possible, said, variables = set(SYSTEMS), "", dataset.variables
+    for name, field in {"time": TIME, **FIELDS}.items():
+        label = variables[name].attrs.get("units") if name in variables else None
+        kind = _KIND_OF.get(field.units)
+        if label in _BARE or kind is None:
+            continue
+        fitting = {system for system in SYSTEMS if _label(kind, system) == label}
+        if not fitting:
+            known = ", ".join(dict.fromkeys(repr(_label(kind, system)) for system in SYSTEMS))
+            raise InputError(f"{name!r} is in {label!r}: a run has it in one of {known}")
+        if not possible & fitting:
+            raise InputError(
+                f"{name!r} is in {label!r} but {said}: put all into one system with Scales.dataset"
+            )
+        possible &= fitting
+        said = said or f"{name!r} is in {label!r}"
+    scales = _scales(dataset)
+    if possible == set(SYSTEMS):  # nothing said
+        return DIMENSIONLESS if scales is None else Units("SI", scales)
+    system = next(system for system in SYSTEMS if system in possible)
+    return Units(system, scales if system != "dimensionless" else None)
+
+
+def in_micrometres(dataset: xr.Dataset) -> xr.Dataset:
+    """Return a run in SI with lengths in micrometres; any other as it is."""
+    if units_of(dataset).system != "SI":
+        return dataset
+    changed = {}
+    for name, variable in dataset.variables.items():
+        label, factor = _MICRO.get(variable.attrs.get("units", ""), ("", 1.0))
+        if label:
+            attributes = {**variable.attrs, "units": label}
+            changed[name] = (variable.dims, variable.data * factor, attributes)
+    return dataset.assign(changed)
+
+
+def typical_radius(dataset: xr.Dataset) -> float:
+    """Return R_0 in the units of the dataset, or if unknown the radius of a disc of its area."""
+    radius = units_of(dataset).one("length")
+    if math.isnan(radius):
+        radius = math.sqrt(float(np.median(dataset["area"].values)) / math.pi)
+    return radius
+
+
+def _label(kind: str, system: str) -> str:
+    if system == "dimensionless":
+        return KINDS[kind].label
+    unit = KINDS[kind].unit
+    return _MICRO.get(unit, (unit, 1.0))[0] if system == "micrometres" else unit
+
+
+def _factor(kind: str, system: str) -> float:
+    return _MICRO.get(KINDS[kind].unit, ("", 1.0))[1] if system == "micrometres" else 1.0
+
+
+def _scales(dataset: xr.Dataset) -> Scales | None:
+    try:
+        return Scales.from_dict(json.loads(dataset.attrs["scales"]))
+    except (KeyError, TypeError, ValueError):
+        return None
