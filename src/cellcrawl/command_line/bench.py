@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Iterable
 from pathlib import Path
@@ -74,7 +75,7 @@ def _work_precision(quick: bool) -> _Result:
         for solver in dict.fromkeys(row.solver for row in part if row.solver != "adaptive"):
             shown = {e: wp.speed_up(part, solver, e) for e in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)}
             ratios.append({"case": case, "t_end": t_end, "solver": solver, "times": shown})
-            values = "  ".join(f"{e:g}: {ratio:.1f}x" for e, ratio in shown.items())
+            values = "  ".join(f"{e:g}: {_times(ratio)}" for e, ratio in shown.items())
             say(f"{case}, t = {t_end:g}: adaptive is faster than {solver} at error {values}")
     return _Result({"rows": [row._asdict() for row in rows], "ratios": ratios}, wp.plot(rows))
 
@@ -137,6 +138,10 @@ def _table(kind: Any, rows: Iterable[Any]) -> Iterable[Any]:
         say("  ".join(_cell(value) for value in row))
         sys.stdout.flush()
         yield row
+
+
+def _times(ratio: float) -> str:
+    return f"{ratio:.1f}x" if math.isfinite(ratio) else "not reached"
 
 
 def _cell(value: Any) -> str:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import Normalize
 
@@ -96,6 +98,16 @@ def colour_bar(
         bar.ax.minorticks_off()
     plain(bar)
     return bar
+
+
+def shared_bar(
+    axes: Sequence[Axes], run: xr.Dataset, field: str, limits: Limits, **options: Any
+) -> Colorbar:
+    """Add one colour bar beside several axes that were drawn with these ``limits``."""
+    values = run[field].values
+    colours = colouring(run, field, values, limits)
+    shown = ScalarMappable(colours.norm, colours.colormap)
+    return colour_bar(shown, list(axes), colours, values, **{"fraction": 0.03, **options})
 
 
 def plain(bar: Colorbar) -> None:

@@ -17,7 +17,7 @@ from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar  # type: ig
 from cellcrawl.observables import speed
 from cellcrawl.plot.colouring import Colouring
 from cellcrawl.plot.labels import length_unit, unit
-from cellcrawl.plot.style import BODY, INK, RIM, figure_of, on
+from cellcrawl.plot.style import BODY, INK, RIM, on
 from cellcrawl.simulation.units import typical_radius, units_of
 
 
@@ -159,7 +159,8 @@ class _Filling:
         place: Bbox = ax.get_position(original=True)
         limits = np.transpose([ax.get_xlim(), ax.get_ylim()])
         if np.allclose(limits, self._set):  # else somebody has zoomed
-            shape = np.array([place.width, place.height]) * figure_of(ax).get_size_inches()
+            panel = place.transformed(ax.figure.transSubfigure)
+            shape = np.array([panel.width, panel.height])
             half = float(np.max(self._half / shape)) * shape
             self._set = np.array([self._middle - half, self._middle + half])
             ax.set_xlim(*self._set[:, 0])

@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.cm import ScalarMappable
 from matplotlib.figure import SubFigure
 
 from cellcrawl import classify, linear, plot
 from cellcrawl.parameters import Parameters
-from cellcrawl.plot.colouring import colour_bar, colouring
+from cellcrawl.plot.colouring import shared_bar
 from cellcrawl.plot.style import PAGE, paper_figure
 from cellcrawl.reproduction.cells import LONG, NINE, Cell
 from cellcrawl.reproduction.movies import SAVE_EVERY
@@ -64,10 +63,7 @@ def _draw_tracks(runs: dict[Cell, xr.Dataset], panel: SubFigure) -> None:
     for letter, ax, (cell, run) in zip("BCDEFGHIJ", axes.ravel(), runs.items(), strict=True):
         plot.path(run, cell.apart, limits=_LIMITS, colorbar=False, ax=ax)
         ax.set_title(f"{letter}   {cell.mode} ({cell.r_on:g}, {cell.zeta_1:g})", loc="left")
-    values = run["bound_fraction"].values
-    colours = colouring(run, "bound_fraction", values, _LIMITS)
-    shown = ScalarMappable(colours.norm, colours.colormap)
-    colour_bar(shown, axes.ravel().tolist(), colours, values, shrink=0.4, fraction=0.03)
+    shared_bar(axes.ravel().tolist(), run, "bound_fraction", _LIMITS, shrink=0.4)
 
 
 def _found(sweep: Sweep) -> list[str]:

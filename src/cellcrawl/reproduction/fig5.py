@@ -6,11 +6,10 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 import xarray as xr
-from matplotlib.cm import ScalarMappable
 
 from cellcrawl import observables, plot
 from cellcrawl.parameters import Parameters
-from cellcrawl.plot.colouring import colour_bar, colouring
+from cellcrawl.plot.colouring import shared_bar
 from cellcrawl.plot.style import PAGE, paper_figure
 from cellcrawl.reproduction.cells import LONG
 from cellcrawl.reproduction.movies import SAVE_EVERY
@@ -48,10 +47,7 @@ def make(workplace: Workplace, name: str) -> list[str]:
             stretch = run.sel(time=slice(start, start + duration))
             _keep(workplace, panel.mode, stretch)
             found.append(f"{panel.mode}: {_found(run, stretch, turn)}")
-        values = stretch["bound_fraction"].values
-        colours = colouring(stretch, "bound_fraction", values, _LIMITS)
-        shown = ScalarMappable(colours.norm, colours.colormap)
-        colour_bar(shown, axes.tolist(), colours, values, fraction=0.03, shrink=0.5)
+        shared_bar(axes.tolist(), stretch, "bound_fraction", _LIMITS, shrink=0.5)
         workplace.picture(figure)
     return found
 
