@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -77,6 +78,34 @@ def _report_mode(dataset: xr.Dataset) -> None:
         say(f"mode     {found.mode}{detail}, confidence {found.confidence:.2f}: {found.summary()}")
     else:
         say(f"mode     {found.mode} so far; a run to t = {SHORTEST_RUN:g} or more can tell")
+
+
+def report_sweep(found: Any) -> None:
+    """Say what a sweep is, how far it is and which modes it has found."""
+    status = found.status()
+    say(f"grid     {found.grid.summary()}: {len(found.grid)} runs{_refined(found, status)}")
+    left = status.runs - status.done
+    at_work = ", a sweep is at work" if status.at_work else ""
+    say(f"done     {status.done}" + (f", {left} left" if left else "") + at_work)
+    if status.statuses:
+        say(f"ended    {_counted(status.statuses)}")
+    if status.modes:
+        say(f"modes    {_counted(status.modes)}")
+    for reason, count in found.failures().items():
+        say(f"failed   {count}: {reason}")
+    say(f"rows     {found.path / 'rows'}")
+
+
+def _refined(found: Any, status: Any) -> str:
+    full = found.full_grid_runs()
+    if full is None:
+        return ""
+    return f", refined to {status.done} of the {full} of the full grid ({status.done / full:.0%})"
+
+
+def _counted(counts: dict[str, int]) -> str:
+    ordered = sorted(counts.items(), key=lambda item: -item[1])
+    return ", ".join(f"{name} {count}" for name, count in ordered)
 
 
 def exit_code(status: str) -> int:

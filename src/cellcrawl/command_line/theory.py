@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 import numpy as np
 
+from cellcrawl.command_line.look import Look, look_options
 from cellcrawl.command_line.options import parameter_options, say
 from cellcrawl.errors import InputError, StorageError
 from cellcrawl.parameters import DESCRIPTIONS, Parameters
@@ -39,7 +40,7 @@ def _picture_options(function: F) -> F:
         show_default=True,
         help="Resolution of a .png.",
     )
-    return output(dpi(function))
+    return output(dpi(look_options(function)))
 
 
 @click.command()
@@ -58,7 +59,12 @@ def _picture_options(function: F) -> F:
 @_picture_options
 @parameter_options(_USUAL)
 def dispersion(
-    vary: tuple[str, ...], k_max: int | None, output: Path | None, dpi: int, **parameters: Any
+    vary: tuple[str, ...],
+    k_max: int | None,
+    output: Path | None,
+    dpi: int,
+    look: Look,
+    **parameters: Any,
 ) -> None:
     """Print both growth rates of every wavenumber; with --output, draw them.
 
@@ -85,7 +91,8 @@ def dispersion(
         _print_rates(member, 20 if k_max is None else k_max)
     if output is not None:
         family: dict[str, Any] = dict(varied)
-        _save(plot.dispersion(cell, k_max=k_max, **family), output, dpi)
+        with look.used():
+            _save(plot.dispersion(cell, k_max=k_max, **family), output, dpi)
 
 
 @click.command()
@@ -120,6 +127,7 @@ def stability(
     data: Path | None,
     output: Path | None,
     dpi: int,
+    look: Look,
     **parameters: Any,
 ) -> None:
     """Say which wavenumbers grow where, over two parameters; with --output, draw the map.
@@ -148,7 +156,8 @@ def stability(
             raise StorageError(f"cannot write {data}: {error.strerror or error}") from None
         say(f"data     {data}")
     if output is not None:
-        _save(figure_of(plot.stability(stability_map)), output, dpi)
+        with look.used():
+            _save(figure_of(plot.stability(stability_map)), output, dpi)
 
 
 def _cell(parameters: dict[str, Any]) -> Parameters:

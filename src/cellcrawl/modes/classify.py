@@ -28,6 +28,7 @@ _LATER_STARTS = (0.0, 1 / 9, 2 / 9, 3 / 9)
 _PREFER_EARLY = 0.3  # a start that leaves out the part p must fit better by this times p
 _FEW_TURNS = 3  # a track that has turned less often, and less than once round, may be any mode
 _UNTOLD = 0.6  # the confidence it can have
+_LAST = 1e-3  # a score below that of every mode that fits
 _CUT_SHORT = 0.5  # the confidence that a run which failed can have
 _FAILURES = tuple(set(STATUSES) - {"completed", "fragmented", "interrupted", "running"})
 
@@ -153,7 +154,10 @@ def _ended(found: Classification, status: str, time: float) -> Classification:
 
 
 def _score(result: Classification, later: float) -> float:
-    return result.confidence - _PREFER_EARLY * later if result.mode != "other" else 0.0
+    early = result.confidence - _PREFER_EARLY * later
+    if result.mode == "other":  # any other mode goes before
+        return _LAST * early if result.detail else 0.0
+    return early
 
 
 def _apply_rule(track: SmoothTrack, start: int, cell_radius: float | None) -> Classification:

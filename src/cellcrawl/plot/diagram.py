@@ -144,6 +144,8 @@ def measure_map(
     table = _rows(sweep)
     values = means(table, measure, x, y)
     ends: Any = (None, None) if limits is None else checked_limits(limits)
+    if not np.isfinite(values).any():
+        raise InputError(f"no run has a value of {measure}: they may be too short to show it")
     only = only_axis(table, x, y)
     if only:
         return draw_measure(table, line(table, only), measure, values, ends, ax)
