@@ -13,6 +13,7 @@ from pathlib import Path
 import xarray as xr
 
 import cellcrawl as cc
+from cellcrawl.plot.style import paper_figure
 
 # (r_on, zeta_1) -> time between the contours drawn, as in Fig. 4 of the paper
 CELLS = {
@@ -41,9 +42,9 @@ def main(folder: Path) -> None:
     three = {}
     for (r_on, zeta_1), every in CELLS.items():
         run = crawl(r_on, zeta_1)
-        cc.plot.path(run, every=every).figure.savefig(
-            folder / "gallery" / f"{r_on}-{zeta_1}.png", dpi=160
-        )
+        with paper_figure(3.6, 3.2) as figure:
+            cc.plot.path(run, every=every, ax=figure.subplots())
+        figure.savefig(folder / "gallery" / f"{r_on}-{zeta_1}.png", dpi=160)
         if (r_on, zeta_1) in THREE:
             three[THREE[r_on, zeta_1]] = run
         heading = cc.observables.heading(run).sel(time=slice(20, None))
