@@ -103,7 +103,7 @@ def movie(
     else:
         shown, durations = gif_times(records.size, rate)
         records = records[shown]
-    scene = Scene(run, records, field, limits, colormap, view, pixels)
+    scene = Scene(run, records, field, limits, view, pixels, colormap)
     with _renamed_when_complete(target) as unfinished:
         frames = _frames(scene, records.size, progress)
         if suffix == ".mp4":

@@ -42,12 +42,12 @@ class Scene:
         The field that colours the edge.
     limits : (float, float) or None
         Ends of the colour scale.
-    colormap : str or None
-        Another colour map than the field's own.
     view : {"follow", "path"}
         The camera stays with the cell, or shows the whole path.
     size : (int, int)
         Width and height in pixels.
+    colormap : str, optional
+        Another colour map than the field's own.
     """
 
     def __init__(
@@ -56,9 +56,9 @@ class Scene:
         records: np.ndarray,
         field: str,
         limits: Limits | None,
-        colormap: str | None,
         view: str,
         size: tuple[int, int],
+        colormap: str | None = None,
     ) -> None:
         shown = dataset.isel(time=records)
         self._points = np.stack([shown["x"].values, shown["y"].values], axis=-1)

@@ -130,7 +130,7 @@ class Lattice:
 
     def learn(self, sweep: Sweep) -> None:
         """Take note of the modes found."""
-        columns = [*DESCRIPTIONS, "mode", "confidence"]
+        columns = [*DESCRIPTIONS, "mode", "status", "confidence"]
         found = plane(sweep.table(columns), *self._names)
         where = [{value: k for k, value in enumerate(values)} for values in self._values]
         modes = majority(found)
