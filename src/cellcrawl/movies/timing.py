@@ -51,10 +51,10 @@ def gif_times(frames: int, fps: float) -> tuple[np.ndarray, list[int]]:
     for frame in range(1, frames):
         if begins[frame] - begins[shown[-1]] >= _SHORTEST_IN_GIF:
             shown.append(frame)
-    if len(shown) > 1:
-        shown[-1] = frames - 1  # the last record is always the last frame
-    ends = np.append(begins[shown][1:], max(begins[frames], begins[shown[-1]] + _SHORTEST_IN_GIF))
-    return np.array(shown), (10 * (ends - begins[shown])).tolist()
+    shown[-1] = frames - 1  # the last record is always the last frame
+    starts = begins[[0, *shown[1:]]]
+    ends = np.append(starts[1:], max(begins[frames], starts[-1] + _SHORTEST_IN_GIF))
+    return np.array(shown), (10 * (ends - starts)).tolist()
 
 
 def _allowed(frames: float) -> int:
