@@ -14,6 +14,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 import cellcrawl as cc
+from tests.conftest import settings
 from tests.runs import circle_on_track, circling, straight
 
 RUN = circling(0.3, records=101)
@@ -54,12 +55,12 @@ def drawn(name: str) -> Figure:
 
 @pytest.mark.parametrize("name", [*ON_ONE_AXES, *PAGES])
 def test_pictures_are_figures_of_their_own_and_leave_the_users_settings(name):
-    before = mpl.rcParams.copy()  # dict() would choose a backend, and load pyplot
+    before = settings()
     figure = drawn(name)
     assert isinstance(figure, Figure)
     for suffix in ("pdf", "svg"):
         figure.savefig(io.BytesIO(), format=suffix)
-    assert mpl.rcParams.copy() == before
+    assert settings() == before
 
 
 @pytest.mark.parametrize("name", ["kymographs", "snapshots"])

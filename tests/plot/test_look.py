@@ -14,19 +14,20 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import cellcrawl as cc
+from tests.conftest import settings
 from tests.runs import circling
 
 RUN = circling(0.3, records=61)
 
 
 def test_users_settings_win_over_the_house_and_are_left_as_they_were():
-    before = mpl.rcParams.copy()  # dict() would choose a backend, and load pyplot
+    before = settings()
     with mpl.rc_context({"font.size": 15.0, "axes.linewidth": 3.0}):
         figure = cc.plot.time_series(RUN, ["speed"])
     axes = figure.axes[0]
     assert axes.xaxis.label.get_size() == pytest.approx(15.0)
     assert axes.spines["left"].get_linewidth() == 3.0
-    assert mpl.rcParams.copy() == before
+    assert settings() == before
 
 
 def test_ticks_made_after_the_users_settings_are_gone_keep_them():
