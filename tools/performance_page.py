@@ -20,7 +20,8 @@ HEAD = """# Performance
 Every figure here comes from `cellcrawl bench`, which runs on any machine; `benchmarks/results`
 holds the runs quoted. Machines differ and share their cores: compare figures of one run, trust
 ratios more than seconds. Errors are the larger of the relative error of the length and the distance
-of the centroid over the cell radius, against the adaptive solver at `rtol` 1e-9.
+of the centroid over the cell radius, against the adaptive solver at `rtol` 1e-9; over a run to
+t = 100 the largest at t = 50, 55, ..., 100, for at a single time a run can be lucky.
 
 """
 
@@ -49,6 +50,85 @@ def targets() -> str:
     return head + table(["what", "asked", "measured", "met"], rows) + f"\nMachine: {machine}.\n\n"
 
 
+def long_runs() -> str:
+    """Return the targets of long runs, and what becomes of area, length and period."""
+    if not recorded("long"):
+        return ""
+    rows = [
+        [t["what"], t["asked"], t["measured"], "yes" if t["met"] else "**no**"]
+        for t in load("long")["targets"]
+    ]
+    text = (
+        "## Long runs\n\n`cellcrawl bench long`. Errors are against "
+        "`benchmarks/results/references.json`, which has beside each cell what CVODE makes of it; "
+        "states and periods against an independent continuation code.\n\n"
+        + table(["what", "asked", "measured", "met"], rows)
+    )
+    if recorded("invariants"):
+        shutil.copy(RESULTS / "invariants.png", PICTURES)
+        solvers = load("invariants")["solvers"]
+        ended = ", ".join(
+            f"`{name}` to t = {run['reached']:g} ({run['status']}, {run['seconds']:.0f} s)"
+            for name, run in solvers.items()
+        )
+        text += (
+            f"\nA zigzagging cell, (26, 600), for long (`benchmarks/invariants.py`): {ended}. The "
+            "period of `paper` is that of its finite grid and step; dashed, the exact one.\n\n"
+            "![Area against the tension law, mean length and period of the tension over a long run]"
+            "(images/performance/invariants.png)\n"
+        )
+    return text + "\n"
+
+
+def two_versions() -> str:
+    """Return times and errors of an older version beside this one."""
+    if not recorded("old-and-new"):
+        return ""
+    content = load("old-and-new")
+    times = [
+        [row["what"], f"{row['old_ms']:.0f}", f"{row['new_ms']:.0f}"]
+        + [f"{row[ratio]:.2f}" for ratio in ("ratio_of_medians", "ratio_of_minima")]
+        for row in content["times"]
+    ]
+    missed = [
+        [row["what"], f"{row['rtol']:g}", *(_missed(row[which]) for which in ("old", "new"))]
+        for row in content["errors"]
+    ]
+    law = [
+        [row["what"], *(f"{row[k]['off_law']:.1e}, {row[k]['status']}" for k in ("old", "new"))]
+        for row in content["law"]
+    ]
+    diagram = ""
+    if "diagram" in content:
+        old, new = (
+            min(pair) for pair in zip(*content["diagram"]["old_and_new_seconds"], strict=True)
+        )
+        diagram = (
+            f"\nThe whole of `{content['diagram']['grid']}`, from a cold shell to the picture, on "
+            f"all cores: {old:.0f} s before, {new:.0f} s now.\n"
+        )
+    return (
+        f"## Before and now\n\n`benchmarks/old_and_new.py`: version {content['old']} beside "
+        f"{content['new']}, in turns in one run, t = 0 to 100 at rtol 1e-4.\n\n"
+        + table(["cell", "before (ms)", "now (ms)", "ratio of medians", "of minima"], times)
+        + diagram
+        + "\nLargest errors at t = 50, 55, ..., 100, of length / of the centroid.\n\n"
+        + table(["cell", "rtol", "before", "now"], missed)
+        + f"\nArea of the shape off the tension law by t = {content['law_until']:g} at rtol 1e-4, "
+        "and how the run ended.\n\n" + table(["cell", "before", "now"], law) + "\n"
+    )
+
+
+def _missed(run: dict[str, Any]) -> str:
+    found = run["errors"]
+    return "ended before" if found is None else f"{found['length']:.1e} / {found['centroid']:.1e}"
+
+
+def recorded(name: str) -> bool:
+    """Whether a benchmark has been recorded."""
+    return (RESULTS / f"{name}.json").exists()
+
+
 def work_precision() -> str:
     """Return the range of speed-ups at equal error over all cases."""
     times: dict[tuple[str, str], dict[str, list[float]]] = defaultdict(lambda: defaultdict(list))
@@ -64,10 +144,10 @@ def work_precision() -> str:
     ]
     text = (
         "## Work against precision\n\n`cellcrawl bench work-precision`: five cells and two more "
-        "diffusivities, both tension laws, t = 5 and 20. How many times longer than the adaptive "
-        "solver another takes for the same error: least to most over the cases, and in how many "
-        "cases it gets there. The general solvers use the adaptive solver's own compiled "
-        "right-hand side on a fixed grid as fine as it finds necessary.\n\n"
+        f"diffusivities, both tension laws, t = {_ends('work-precision')}. How many times longer "
+        "than the adaptive solver another takes for the same error: least to most over the cases, "
+        "and in how many cases it gets there. The general solvers have a compiled right-hand side "
+        "of tenth order on fixed, equally spaced nodes; of several grids the best counts.\n\n"
     )
     names = ["solver", "law", *(f"error {error}" for error in errors)]
     shutil.copy(RESULTS / "work-precision.png", PICTURES)
@@ -78,6 +158,12 @@ def work_precision() -> str:
     )
     picture = "![Error against time for every solver](images/performance/work-precision.png)\n\n"
     return text + table(names, rows) + "\n" + short + picture
+
+
+def _ends(name: str) -> str:
+    """Return the times to which the recorded runs went, in words."""
+    *early, last = sorted({ratio["t_end"] for ratio in load(name)["ratios"]})
+    return f"{', '.join(f'{t:g}' for t in early)} and {last:g}"
 
 
 def scaling() -> str:
@@ -120,8 +206,8 @@ def _range(values: list[float]) -> str:
 def main() -> None:
     """Write the page."""
     PICTURES.mkdir(parents=True, exist_ok=True)
-    page = HEAD + targets() + work_precision() + scaling() + startup()
-    (ROOT / "docs" / "performance.md").write_text(page, "utf-8")
+    parts = (HEAD, targets(), long_runs(), two_versions(), work_precision(), scaling(), startup())
+    (ROOT / "docs" / "performance.md").write_text("".join(parts), "utf-8")
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from cellcrawl.sweeps.identity import code_version
 
@@ -84,18 +84,31 @@ def sweeps(work: Path) -> None:
 
 
 def modes(work: Path) -> None:
-    """Tracks and headings of the named cells."""
+    """Tracks and headings of the named cells, and how often answers are right."""
+    from cellcrawl.bench import confidence
     from cellcrawl.bench.modes import plot
 
-    plot().savefig(RESULTS / "modes.png", dpi=160)
-    copy(RESULTS / "modes.png", IMAGES / "modes.png")
+    rows = [confidence.Reliability(**row) for row in recorded("modes").get("confidence", ())]
+    together = [row for row in rows if row.records == "all"]
+    apart = [row for row in rows if row.records != "all"]
+    if not rows:
+        together, apart = confidence.measure()
+    drawn = {"modes": plot(), "confidence": confidence.plot(together, apart)}
+    for name, figure in drawn.items():
+        figure.savefig(RESULTS / f"{name}.png", dpi=160)
+        copy(RESULTS / f"{name}.png", IMAGES / f"{name}.png")
 
 
 def benchmarks(work: Path) -> None:
-    """Work against precision and cost against size, from the recorded results."""
+    """Work against precision, cost against size and very long runs, from the recorded results."""
     from cellcrawl.bench import scaling, work_precision
 
-    rows = [work_precision.Row(**row) for row in recorded("work-precision")["rows"]]
+    try:
+        rows = [work_precision.Row(**row) for row in recorded("work-precision")["rows"]]
+    except TypeError:
+        raise SystemExit(
+            "the recorded work-precision is of an older form: measure it anew"
+        ) from None
     drawn = {"work-precision": work_precision.plot(rows)}
     found = recorded("scaling")
     drawn["scaling"] = scaling.plot(
@@ -105,14 +118,17 @@ def benchmarks(work: Path) -> None:
     for name, figure in drawn.items():
         figure.savefig(RESULTS / f"{name}.png", dpi=160)
         copy(RESULTS / f"{name}.png", IMAGES / "performance" / f"{name}.png")
+    if (RESULTS / "invariants.json").exists():
+        command("benchmarks/invariants.py", "--draw")
+        copy(RESULTS / "invariants.png", IMAGES / "performance" / "invariants.png")
 
 
 STEPS = (
     Step("linear", ("docs/images/linear/*.png",), linear),
     Step(
-        "benchmarks", ("benchmarks/results/[sw]*.png", "docs/images/performance/*.png"), benchmarks
+        "benchmarks", ("benchmarks/results/[isw]*.png", "docs/images/performance/*.png"), benchmarks
     ),
-    Step("modes", ("benchmarks/results/modes.png", "docs/images/modes.png"), modes),
+    Step("modes", ("benchmarks/results/[mc]*.png", "docs/images/[mc]*.png"), modes),
     Step("cells", ("docs/images/three-cells.png", "docs/images/gallery/*.png"), cells),
     Step("temperature", ("docs/images/temperature/*.png",), temperature),
     Step("one-dimensional", ("docs/images/one_dimensional/*.png",), one_dimensional),
@@ -127,9 +143,9 @@ def copy(source: Path, target: Path) -> None:
     shutil.copyfile(source, target)
 
 
-def recorded(name: str) -> dict[str, list[dict[str, object]]]:
+def recorded(name: str) -> dict[str, list[dict[str, Any]]]:
     """Return the recorded results of a benchmark."""
-    content: dict[str, list[dict[str, object]]] = json.loads(
+    content: dict[str, list[dict[str, Any]]] = json.loads(
         (RESULTS / f"{name}.json").read_text("utf-8")
     )
     return content

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from cellcrawl import linear as linear
+    from cellcrawl import microscopy as microscopy
     from cellcrawl import modes as modes
     from cellcrawl import observables as observables
     from cellcrawl import one_dimensional as one_dimensional
@@ -20,6 +21,11 @@ if TYPE_CHECKING:
     from cellcrawl.errors import CellcrawlError as CellcrawlError
     from cellcrawl.errors import InputError as InputError
     from cellcrawl.errors import StorageError as StorageError
+    from cellcrawl.microscopy import observe as observe
+    from cellcrawl.microscopy import read_outlines as read_outlines
+    from cellcrawl.microscopy import read_tracks as read_tracks
+    from cellcrawl.microscopy import write_outlines as write_outlines
+    from cellcrawl.microscopy import write_tracks as write_tracks
     from cellcrawl.modes import classify as classify
     from cellcrawl.modes import classify_track as classify_track
     from cellcrawl.movies import movie as movie
@@ -66,11 +72,16 @@ _HOMES = {
     "movie": "movies",
     "open_run": "simulation",
     "open_sweep": "sweeps",
+    "observe": "microscopy",
+    "read_outlines": "microscopy",
+    "read_tracks": "microscopy",
     "resume": "simulation",
     "simulate": "simulation",
     "sweep": "sweeps",
+    "write_outlines": "microscopy",
+    "write_tracks": "microscopy",
 }
-_MODULES = ("linear", "modes", "observables", "one_dimensional", "plot", "sweeps")
+_MODULES = ("linear", "microscopy", "modes", "observables", "one_dimensional", "plot", "sweeps")
 
 __all__ = [*_HOMES, *_MODULES, "__version__"]
 

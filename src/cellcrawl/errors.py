@@ -22,6 +22,10 @@ class MissingExtraError(CellcrawlError, ImportError):
     """An optional dependency is needed; the message says which extra installs it."""
 
 
+class OutlineChangedWarning(UserWarning):
+    """An outline was changed so that the model can hold it; the message says how."""
+
+
 def nearest_name(name: object, known: Iterable[str]) -> str:
     """Return ``did you mean 'x'?`` for a misspelt name, or the list of what exists.
 

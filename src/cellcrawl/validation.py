@@ -46,7 +46,10 @@ def one_of(name: str, value: Any, allowed: Iterable[str]) -> str:
 
 
 def real_array(name: str, value: Any, shape: tuple[int | None, ...] | None) -> np.ndarray:
-    """Return a finite float array of ``shape`` (None: any size, or any shape), or raise."""
+    """Return a finite float array of ``shape`` (None: any size, or any shape), or raise.
+
+    What lies under a NumPy mask is no data: an array with masked values is refused.
+    """
     wanted = "any shape"
     if shape is not None:
         sizes = ("any" if size is None else str(size) for size in shape)
@@ -63,12 +66,26 @@ def real_array(name: str, value: Any, shape: tuple[int | None, ...] | None) -> n
         or any(want not in (None, have) for have, want in zip(array.shape, shape, strict=True))
     ):
         raise InputError(f"{name} has shape {array.shape}: it must have {wanted}")
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+        where = tuple(int(i) for i in np.argwhere(np.ma.getmaskarray(value))[0])
+        raise InputError(f"{name} is masked at index {where}: leave masked values out")
     bad = np.argwhere(~np.isfinite(array))
     if len(bad):
         where = tuple(int(i) for i in bad[0])
         place = f" at index {where}" if where else ""
         raise InputError(f"{name} is not finite{place}: {array[where]}")
     return array
+
+
+def without_masked(*columns: Any) -> tuple[Any, ...]:
+    """Return columns of one length without the rows in which any of them is masked."""
+    if not any(isinstance(column, np.ma.MaskedArray) for column in columns):
+        return columns
+    sizes = {np.shape(column) for column in columns}
+    if len(sizes) > 1:
+        return columns  # refused where the sizes are checked
+    kept = ~np.any([np.ma.getmaskarray(np.ma.asarray(column)) for column in columns], axis=0)
+    return tuple(np.ma.getdata(np.ma.asarray(column))[kept] for column in columns)
 
 
 def known_names(what: str, given: Iterable[Any], known: Iterable[str]) -> None:

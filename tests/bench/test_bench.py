@@ -9,20 +9,53 @@ import numpy as np
 import pytest
 
 from cellcrawl.bench import machine, rivals
-from cellcrawl.bench.cases import Case, error, reference
+from cellcrawl.bench.cases import Case, errors
+from cellcrawl.bench.references import References, computed
+from cellcrawl.bench.uniform_grid import UniformGrid
 from cellcrawl.bench.work_precision import Row, prepare, speed_up
 from cellcrawl.command_line.main import run
 
 
 def row(solver: str, miss: float, seconds: float) -> Row:
-    return Row("case", 5.0, solver, "", miss, seconds, 256)
+    return Row("case", 5.0, solver, "", miss, miss, 0.0, 0.0, 0.0, seconds, 256)
 
 
-def test_error_is_the_larger_of_length_and_centroid():
-    truth = np.array([2.0, 1.0, 1.0])
-    assert error(np.array([2.002, 1.0, 1.0]), truth) == pytest.approx(1e-3)
-    assert error(np.array([2.0, 1.003, 1.004]), truth) == pytest.approx(5e-3)
-    assert error(np.array([math.nan, 1.0, 1.0]), truth) == math.inf
+def test_errors_are_the_largest_over_all_times():
+    truth = np.array([[2.0, 900.0, 3.0, 1.0, 1.0]] * 3)
+    found = truth.copy()
+    found[0, 0] = 2.002
+    found[1, 1], found[1, 2] = 909.0, 2.97
+    found[2, 3:] = 1.003, 1.004
+    miss = errors(found, truth)
+    assert miss == pytest.approx((1e-3, 1e-2, 1e-2, 5e-3))
+    assert miss.largest == pytest.approx(5e-3)  # of length and centroid
+    found[1, 4] = math.nan
+    assert errors(found, truth).length == math.inf
+
+
+def test_a_long_run_is_measured_over_its_second_half_a_short_one_at_its_end():
+    assert Case(26, 600, t_end=5.0).times == (5.0,)
+    assert Case(26, 600, t_end=100.0).times == tuple(range(50, 101, 5))
+
+
+def test_references_are_read_back_and_others_computed(tmp_path):
+    case = Case(26, 600, t_end=0.3)
+    recorded = {"r_on": 26, "zeta_1": 600, "elasticity": "printed", "D": 0.05, "random": False}
+    values = {name: [7.0] for name in ("length", "tension", "area", "centroid_x", "centroid_y")}
+    path = tmp_path / "references.json"
+    machine.write(path, {"references": [{**recorded, "t_end": 0.3, "times": [0.3], **values}]})
+    assert np.all(References(path).of(case) == 7.0)
+    other = Case(26, 600, "consistent", t_end=0.3)
+    assert np.array_equal(References(path).of(other), computed(other))
+
+
+@pytest.mark.parametrize("content", ["{}", "no json", '{"references": [{"r_on": 26}]}', None])
+def test_references_that_cannot_be_read_are_one_line(tmp_path, content, capsys):
+    path = tmp_path / "references.json"
+    if content is not None:
+        path.write_text(content)
+    assert run(["bench", "targets", "--references", str(path)]) == 2
+    assert str(path) in capsys.readouterr().err
 
 
 def test_speed_up_compares_at_equal_error():
@@ -44,16 +77,17 @@ def test_rivals_solve_the_same_equations(name):
     if solve is None:
         pytest.skip(f"{name} is not installed")
     case = Case(26, 600, t_end=0.5)
-    system = rivals.FixedGrid(case, 192)
-    found = system.summary(case.t_end, solve(system, case.t_end, 1e-8))
-    assert error(found, reference(case)) < 1e-5
+    system = UniformGrid(case.start(1024), case.conditions, 192)
+    found = rivals.solved(solve, system, (0.2, case.t_end), 1e-8)
+    assert found.shape == (2, 5)
+    assert max(errors(found[1:], computed(case))) < 1e-5
 
 
 def test_solvers_are_timed_on_the_same_case():
     case = Case(26, 600, t_end=0.5)
-    truth = reference(case)
-    assert error(prepare("adaptive", case, rtol=1e-6)()[0], truth) < 1e-6
-    assert error(prepare("paper", case, nodes=400, dt=1e-3)()[0], truth) < 1e-2
+    truth = computed(case)
+    assert max(errors(prepare("adaptive", case, rtol=1e-6)()[0], truth)) < 1e-6
+    assert max(errors(prepare("paper", case, nodes=400, dt=1e-3)()[0], truth)) < 1e-2
 
 
 def test_results_are_valid_json_with_the_machine(tmp_path):

@@ -16,8 +16,10 @@ def test_paper_scheme_is_of_first_order_in_time():
 
 
 def test_paper_scheme_is_of_second_order_in_space():
+    # Positions on a circle have more: closing the outline takes most of their error away.
     for name, order in orders.manufactured_order_in_space().items():
-        assert order == pytest.approx(2.0, abs=0.15), name
+        assert order > 1.85, name
+        assert name in ("x", "y") or order == pytest.approx(2.0, abs=0.15), name
 
 
 @pytest.mark.parametrize("rtol", [1e-3, 1e-5, 1e-7, 1e-9])

@@ -23,6 +23,7 @@ from cellcrawl.parameters.paper_cells import PAPER_MODES
 from cellcrawl.plot.edge import frame, scale_bar
 from cellcrawl.plot.labels import time_label
 from cellcrawl.plot.style import PAGE, RIM, TRACK, paper_figure
+from cellcrawl.plot.track_panels import LEFT, RIGHT
 from cellcrawl.simulation import simulate
 from cellcrawl.starts import RandomPerturbation
 
@@ -30,8 +31,7 @@ SURE = 0.9
 """A wrong name with at least this confidence is a bad mistake."""
 _TURNS_SHOWN = 0.25  # least range of a heading that is drawn, so that a straight one looks straight
 _SEEDS = (1, 2, 3, 4, 5)
-_LEFT, _RIGHT = "#d55e00", "#0072b2"
-_SIDES = (("left", _LEFT), ("right", _RIGHT))
+_SIDES = (("left", LEFT), ("right", RIGHT))
 
 
 class Kind(NamedTuple):
@@ -180,7 +180,7 @@ def _draw(track: Axes, heading: Axes, settled: xr.Dataset, run: xr.Dataset) -> N
     turns = turning_events(settled)
     for start, end, sign in zip(turns["start"], turns["end"], turns["sign"], strict=True):
         part = slice(float(start), float(end))
-        colour = _LEFT if sign > 0 else _RIGHT
+        colour = LEFT if sign > 0 else RIGHT
         turn = settled.sel(time=part)
         track.plot(turn["centroid_x"], turn["centroid_y"], color=colour, linewidth=1.2)
         heading.plot(turn["time"], angle.sel(time=part), color=colour, linewidth=1.2)

@@ -1,4 +1,4 @@
-"""General ODE solvers on the adaptive solver's own compiled right-hand side.
+"""General ODE solvers on the model as a plain system, `bench.uniform_grid`.
 
 The grid is fixed; everything else is theirs: CVODE's BDF with GMRES (SUNDIALS, through
 scikit-sundae) and SciPy's LSODA and BDF.
@@ -7,108 +7,37 @@ scikit-sundae) and SciPy's LSODA and BDF.
 from __future__ import annotations
 
 import importlib.util
-import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
-from cellcrawl._compile import kernel
-from cellcrawl.bench.cases import Case
-from cellcrawl.solvers.adaptive import state as layout
-from cellcrawl.solvers.adaptive.frame import instant, shape_of
-from cellcrawl.solvers.adaptive.rates import TENSION_RATE, WORK_ROWS, rates
-from cellcrawl.solvers.adaptive.staggered import HALO
+from cellcrawl.bench.uniform_grid import UniformGrid
 
-_SCALARS = 5  # length, tension, area, position of node 0
+Rival = Callable[[UniformGrid, Sequence[float], float], np.ndarray]
+"""Gives the states at some times after 0, shape (times, unknowns), to a relative tolerance."""
 
 
-@kernel
-def _compact_rates(
-    u: np.ndarray,
-    out: np.ndarray,
-    state: np.ndarray,
-    state_t: np.ndarray,
-    y: np.ndarray,
-    edge: np.ndarray,
-    work: np.ndarray,
-) -> None:
-    """Rates of a state without halos; NaN where the force balance has no root."""
-    nodes = y.size
-    n_at, scalars_at = nodes + 3 * HALO, 2 * (nodes + 2 * HALO)
-    state[HALO : HALO + nodes] = u[:nodes]
-    state[n_at : n_at + nodes] = u[nodes : 2 * nodes]
-    state[scalars_at : scalars_at + _SCALARS] = u[2 * nodes :]
-    if rates(state, state_t, y, edge, work):
-        out[:nodes] = state_t[HALO : HALO + nodes]
-        out[nodes : 2 * nodes] = state_t[n_at : n_at + nodes]
-        out[2 * nodes :] = state_t[scalars_at : scalars_at + _SCALARS]
-    else:
-        out[:] = np.nan
-
-
-class FixedGrid:
-    """A case as a plain system of ODEs on a fixed number of nodes."""
-
-    def __init__(self, case: Case, nodes: int) -> None:
-        conditions = case.conditions
-        edge = conditions.edge(0.0, nodes)
-        rate = np.full((1, nodes), conditions.tension_rate(0.0))
-        self._edge = np.concatenate([edge, rate])
-        assert self._edge.shape[0] == TENSION_RATE + 1
-        self._state = layout.from_cell(case.start(1024), nodes)
-        self._state_t = np.zeros_like(self._state)
-        self._y = np.full(nodes, math.log(case.parameters.r_p))
-        self._work = np.zeros((WORK_ROWS, nodes + 2 * HALO))
-        self._conditions = conditions
-        self._nodes = nodes
-        self.calls = 0
-        scalars = layout.scalars(self._state)[:_SCALARS]
-        self.start = np.concatenate([layout.angle(self._state), layout.bound(self._state), scalars])
-
-    def __call__(self, t: float, u: np.ndarray, out: np.ndarray) -> None:
-        """Write the rates of ``u`` to ``out``."""
-        self.calls += 1
-        _compact_rates(u, out, self._state, self._state_t, self._y, self._edge, self._work)
-
-    def function(self, t: float, u: np.ndarray) -> np.ndarray:
-        """Return the rates of ``u``."""
-        out = np.empty_like(u)
-        self(t, u, out)
-        return out
-
-    def summary(self, t: float, u: np.ndarray) -> np.ndarray:
-        """Return length and centroid of ``u``."""
-        nodes = self._nodes
-        state = np.zeros_like(self._state)
-        layout.angle(state)[:] = u[:nodes]
-        layout.bound(state)[:] = u[nodes : 2 * nodes]
-        layout.scalars(state)[:_SCALARS] = u[2 * nodes :]
-        made = instant(t, shape_of(state))
-        return np.array([made.length, made.centroid_x, made.centroid_y])
-
-
-Rival = Callable[[FixedGrid, float, float], np.ndarray]
-
-
-def cvode(system: FixedGrid, t_end: float, rtol: float) -> np.ndarray:
+def cvode(system: UniformGrid, times: Sequence[float], rtol: float) -> np.ndarray:
     """Solve with CVODE, BDF and unpreconditioned GMRES."""
     from sksundae.cvode import CVODE
 
     solver = CVODE(
         system, method="BDF", linsolver="gmres", rtol=rtol, atol=rtol, max_num_steps=10_000_000
     )
-    return np.asarray(solver.solve([0.0, t_end], system.start).y[-1])
+    # given two times it returns every step between, given more the values at these
+    asked = [0.0, 0.5 * times[0], *times]
+    return np.asarray(solver.solve(asked, system.start).y[2:])
 
 
-def lsoda(system: FixedGrid, t_end: float, rtol: float) -> np.ndarray:
+def lsoda(system: UniformGrid, times: Sequence[float], rtol: float) -> np.ndarray:
     """Solve with SciPy's LSODA."""
-    return _scipy("LSODA", system, t_end, rtol)
+    return _scipy("LSODA", system, times, rtol)
 
 
-def bdf(system: FixedGrid, t_end: float, rtol: float) -> np.ndarray:
+def bdf(system: UniformGrid, times: Sequence[float], rtol: float) -> np.ndarray:
     """Solve with SciPy's BDF."""
-    return _scipy("BDF", system, t_end, rtol)
+    return _scipy("BDF", system, times, rtol)
 
 
 def available() -> dict[str, Rival]:
@@ -121,10 +50,31 @@ def available() -> dict[str, Rival]:
     return found
 
 
-def _scipy(method: Any, system: FixedGrid, t_end: float, rtol: float) -> np.ndarray:
+def solved(solve: Rival, system: UniformGrid, times: Sequence[float], rtol: float) -> np.ndarray:
+    """Return length, tension, area and centroid at the times, shape (times, 5).
+
+    NaN from where it gives up on, or goes where there is no off-rate.
+    """
+    found = np.full((len(times), 5), np.nan)
+    try:
+        states = solve(system, times, rtol)
+    except (ValueError, RuntimeError, ArithmeticError):
+        return found
+    for row, state in zip(found, states, strict=False):
+        row[:] = system.whole(state)
+    return found
+
+
+def _scipy(method: Any, system: UniformGrid, times: Sequence[float], rtol: float) -> np.ndarray:
     from scipy.integrate import solve_ivp
 
-    solved = solve_ivp(
-        system.function, (0.0, t_end), system.start, method=method, rtol=rtol, atol=rtol
+    ended = solve_ivp(
+        system.function,
+        (0.0, times[-1]),
+        system.start,
+        method=method,
+        rtol=rtol,
+        atol=rtol,
+        t_eval=np.array(times),
     )
-    return np.asarray(solved.y[:, -1])
+    return np.asarray(ended.y.T)

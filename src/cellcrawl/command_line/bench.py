@@ -6,36 +6,61 @@ import math
 import sys
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
 from cellcrawl.command_line.options import say
 from cellcrawl.validation import one_of
 
-_KINDS = ("work-precision", "targets", "scaling", "startup", "modes", "sweep")
+if TYPE_CHECKING:
+    from cellcrawl.bench.references import References
+
+_KINDS = (
+    "work-precision",
+    "targets",
+    "long",
+    "references",
+    "scaling",
+    "startup",
+    "modes",
+    "sweep",
+)
 
 
 @click.command()
 @click.argument("kind", default="work-precision", metavar="[KIND]")
 @click.option("--quick", is_flag=True, help="A part of it, in under two minutes.")
 @click.option(
+    "--calibrate", is_flag=True, help="Of modes: fit the confidence anew first, and store it."
+)
+@click.option(
     "--output",
     type=click.Path(path_type=Path, file_okay=False),
     metavar="DIR",
     help="Also write the results there, as JSON with machine and versions, and a picture.",
 )
-def bench(kind: str, quick: bool, output: Path | None) -> int:
+@click.option(
+    "--references",
+    type=click.Path(path_type=Path, dir_okay=False),
+    metavar="FILE",
+    help="True values that `bench references` recorded; computed anew unless given.",
+)
+def bench(
+    kind: str, quick: bool, calibrate: bool, output: Path | None, references: Path | None
+) -> int:
     r"""Measure accuracy and speed on this machine.
 
     \b
     KIND is one of
       work-precision  error against time of every solver (default)
-      targets         the solver's targets: accuracy, speed by ratios
+      targets         the solver's targets at t = 2 and 5: accuracy, speed by ratios
+      long            its targets for long runs: t = 100, 1000 and 10000, minutes of work
+      references      the true values of ten cells, with a check by CVODE
       scaling         cost against nodes and against the length of the run
       startup         import, first and second start from the shell
       sweep           scheduling, memory of the driver, workers
-      modes           how often the classifier is right
+      modes           how often the classifier is right, and as often as it says
 
     Compare figures of one run only, and quote ratios: machines differ, and share their cores.
     CVODE takes part if scikit-sundae is installed, SciPy's solvers if SciPy is.
@@ -44,16 +69,27 @@ def bench(kind: str, quick: bool, output: Path | None) -> int:
     Examples
       cellcrawl bench --quick
       cellcrawl bench targets --output benchmarks/results
+      cellcrawl bench long --references benchmarks/results/references.json
     """
     from cellcrawl.bench import machine
+    from cellcrawl.bench.references import References
 
     one_of("KIND", kind, _KINDS)
+    if calibrate:
+        one_of("KIND with --calibrate", kind, ("modes",))
+    known = References(references)
     say(machine.describe(machine.record()))
-    result = _MEASURE[kind](quick)
+    if calibrate:
+        from cellcrawl.bench import confidence
+
+        say(f"fitted   {confidence.calibrate()}")
+    result = _MEASURE[kind](quick, known)
     if output is not None:
         machine.write(output / f"{kind}.json", result.data)
         if result.figure is not None:
             result.figure.savefig(output / f"{kind}.png", dpi=160)
+        for name, figure in (result.more or {}).items():
+            figure.savefig(output / f"{name}.png", dpi=160)
         say(f"results  {output}")
     return 0
 
@@ -61,13 +97,14 @@ def bench(kind: str, quick: bool, output: Path | None) -> int:
 class _Result(NamedTuple):
     data: dict[str, Any]
     figure: Any
+    more: dict[str, Any] | None = None
 
 
-def _work_precision(quick: bool) -> _Result:
+def _work_precision(quick: bool, known: References) -> _Result:
     from cellcrawl.bench import work_precision as wp
 
     rows: list[wp.Row] = []
-    for row in _table(wp.Row, wp.measure(quick)):
+    for row in _table(wp.Row, wp.measure(quick, known)):
         rows.append(row)
     ratios = []
     for case, t_end in dict.fromkeys((row.case, row.t_end) for row in rows):
@@ -80,14 +117,44 @@ def _work_precision(quick: bool) -> _Result:
     return _Result({"rows": [row._asdict() for row in rows], "ratios": ratios}, wp.plot(rows))
 
 
-def _targets(quick: bool) -> _Result:
+def _targets(quick: bool, known: References) -> _Result:
     from cellcrawl.bench import reach
 
-    rows = list(_table(reach.Target, reach.measure(quick)))
+    rows = list(_table(reach.Target, reach.measure(quick, known)))
     return _Result({"targets": [row._asdict() for row in rows]}, None)
 
 
-def _scaling(quick: bool) -> _Result:
+def _long(quick: bool, known: References) -> _Result:
+    from cellcrawl.bench import long
+    from cellcrawl.bench.reach import Target
+
+    rows = []
+    for row in _table(long.Row, long.errors_by_tolerance(quick, known)):
+        rows.append(row)
+    targets = list(_table(Target, long.measure(quick, known, rows)))
+    amplified = list(_table(long.Amplified, long.amplification(quick)))
+    data = {
+        "targets": [row._asdict() for row in targets],
+        "errors": [row._asdict() for row in rows],
+        "amplified": [row._asdict() for row in amplified],
+    }
+    return _Result(data, None)
+
+
+def _references(quick: bool, known: References) -> _Result:
+    from cellcrawl.bench import references
+
+    made = list(references.measure(quick))
+    list(_table(references.Reference, (row for row, _ in made)))
+    data = {
+        "by": f"adaptive solver, rtol {references.RTOL:g}",
+        "check": f"CVODE BDF+GMRES, {references.CHECK_NODES} nodes, rtol {references.CHECK_RTOL:g}",
+        "references": [recorded for _, recorded in made],
+    }
+    return _Result(data, None)
+
+
+def _scaling(quick: bool, known: References) -> _Result:
     from cellcrawl.bench import scaling
 
     nodes = list(_table(scaling.NodeCost, scaling.cost_of_nodes(quick)))
@@ -96,25 +163,29 @@ def _scaling(quick: bool) -> _Result:
     return _Result(data, scaling.plot(nodes, streams))
 
 
-def _startup(quick: bool) -> _Result:
+def _startup(quick: bool, known: References) -> _Result:
     from cellcrawl.bench import startup
 
     rows = list(_table(startup.Start, startup.measure(quick)))
     return _Result({"starts": [row._asdict() for row in rows]}, None)
 
 
-def _modes(quick: bool) -> _Result:
-    from cellcrawl.bench import modes
+def _modes(quick: bool, known: References) -> _Result:
+    from cellcrawl.bench import confidence, modes
 
     kinds = list(_table(modes.Kind, modes.measure_kinds(quick)))
     tracks, right = (sum(getattr(row, name) for row in kinds) for name in ("tracks", "right"))
     say(f"{right} of {tracks} synthetic tracks named right ({right / tracks:.2%})")
     points = list(_table(modes.Point, modes.measure_points(quick)))
+    together, apart = confidence.measure(quick)
+    rows = list(_table(confidence.Reliability, [*together, *apart]))
+    say(f"confidence differs from the part that is right by {confidence.largest_gap(rows):.2f}")
     data = {"kinds": [r._asdict() for r in kinds], "points": [r._asdict() for r in points]}
-    return _Result(data, modes.plot())
+    data["confidence"] = [r._asdict() for r in rows]
+    return _Result(data, modes.plot(), {"confidence": confidence.plot(together, apart)})
 
 
-def _sweep(quick: bool) -> _Result:
+def _sweep(quick: bool, known: References) -> _Result:
     from cellcrawl.bench import sweeps
 
     rows = list(_table(sweeps.Figure, sweeps.measure(quick)))
@@ -125,6 +196,8 @@ _MEASURE = {
     "modes": _modes,
     "work-precision": _work_precision,
     "targets": _targets,
+    "long": _long,
+    "references": _references,
     "scaling": _scaling,
     "startup": _startup,
     "sweep": _sweep,

@@ -5,82 +5,171 @@ from __future__ import annotations
 import contextlib
 import csv
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from cellcrawl.command_line.options import say
+from cellcrawl.command_line.many_tracks import classify_all
+from cellcrawl.command_line.options import say, wants_progress
+from cellcrawl.command_line.track_files import read_tracks_of, reading_options
 from cellcrawl.errors import InputError, StorageError
 
 if TYPE_CHECKING:
     from cellcrawl.modes import Classification
 
 _RUNS = (".nc", ".zarr")
-_COLUMNS = ("t", "x", "y")
+_SHOWN = 200  # tracks shown on the terminal; a table holds them all
+
+
+class _Row(NamedTuple):
+    """One run or track: its classification, or the reason that there is none."""
+
+    file: str
+    track: str
+    result: Classification | None
+    reason: str = ""
+    y_down: bool = False
+
+    @property
+    def label(self) -> str:
+        return f"{self.file} {self.track}".rstrip()
 
 
 @click.command()
 @click.argument(
     "files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE..."
 )
+@reading_options
 @click.option(
     "--cell-radius",
     type=click.FloatRange(0.0, min_open=True),
     metavar="LENGTH",
     help="Radius of the cell in the units of the tracks; runs know theirs.",
 )
+@click.option("--remove-drift", is_flag=True, help="Take off the motion that all tracks share.")
 @click.option(
     "--output",
     type=click.Path(path_type=Path, dir_okay=False),
     metavar="TABLE",
     help="Also write the table with all measures, as .csv.",
 )
-def classify(files: tuple[Path, ...], cell_radius: float | None, output: Path | None) -> None:
+def classify(
+    files: tuple[Path, ...],
+    cell_radius: float | None,
+    remove_drift: bool,
+    output: Path | None,
+    **reading: Any,
+) -> None:
     """Name the motility mode of each FILE: gliding, rotational, zigzag, other, stationary or torn.
 
-    A FILE is a run (.nc, .zarr) or a table of a centroid track with the columns t, x and y in any
-    units; a column "track" keeps several tracks apart. Of several the mode of most is named too.
+    A FILE is a run (.nc, .zarr) or holds tracks: a table whose columns have the usual names, or
+    what TrackMate, trackpy, btrack, napari, CellProfiler, celltrackR, ImageJ and the Cell Tracking
+    Challenge write. It is known by its content; what was recognised and left out is said. Of
+    several tracks the mode of most is named too. A track or a file that cannot be named is listed
+    with the reason and stops none of the others.
 
     \b
     Examples
       cellcrawl classify cellcrawl-run/run.nc
       cellcrawl classify keratocytes/*.csv --output modes.csv
+      cellcrawl classify spots.csv --frame-interval 60 --pixel-size 0.65
+      cellcrawl classify cells.txt --columns id=Cell,t=Time,x=Xpos,y=Ypos
     """
     from cellcrawl.modes import combine
 
-    found = [(name, result) for file in files for name, result in _results(file, cell_radius)]
-    wide = max(len("file"), *(len(name) for name, _ in found))
-    say(f"{'file':{wide}}  mode        sure  turned  swings  period  speed   seen by")
-    for name, result in found:
-        seen = result.measures
-        say(
-            f"{name:{wide}}  {result.mode:10}  {result.confidence:4.2f}  "
-            f"{_cell(math.degrees(seen.turned), '+.0f'):>6}  {seen.swings:6}  "
-            f"{_cell(seen.period, '.3g'):>6}  {_cell(seen.speed, '.3g'):6}  {result.summary()}"
-        )
+    rows: list[_Row] = []
+    failures: list[str] = []
+    for file in files:
+        try:
+            rows += _rows(file, cell_radius, remove_drift, reading)
+        except InputError as error:
+            if len(files) == 1:
+                raise
+            failures.append(_about(str(file), str(error)))
+            rows.append(_Row(str(file), "", None, str(error)))
+    _print(rows)
+    found = [row.result for row in rows if row.result is not None]
+    if not found:
+        first = next((row for row in rows if row.reason), None)
+        why = _about(first.label, first.reason) if first else "there is nothing to name"
+        raise InputError(why)
     if len(found) > 1:
-        verdict = combine(result for _, result in found)
+        verdict = combine(found)
         counts = ", ".join(f"{count} {mode}" for mode, count in verdict.counts.items())
         agreed = f"mixed, most {verdict.majority}" if verdict.mode == "mixed" else verdict.mode
         say(f"together: {agreed} (confidence {verdict.confidence:.2f}): {counts}")
+    for failure in failures:
+        click.echo(f"cellcrawl: left out {failure}", err=True)
     if output is not None:
-        _write(output, found)
+        _write(output, rows)
         say(f"table    {output}")
 
 
-def _results(file: Path, cell_radius: float | None) -> Iterator[tuple[str, Classification]]:
+def _rows(
+    file: Path, cell_radius: float | None, remove_drift: bool, reading: dict[str, Any]
+) -> list[_Row]:
     import cellcrawl as cc
 
-    if file.suffix in _RUNS:
+    if file.suffix in _RUNS and not _is_a_graph(file):
         with cc.open_run(file) as dataset, _complaints_name(str(file)):
-            yield str(file), cc.classify(dataset)
+            return [_Row(str(file), "", cc.classify(dataset))]
+    tracks = read_tracks_of(file, **reading)
+    for line in tracks.lines():
+        say(line)
+    if len(tracks):
+        drift = cc.observables.shared_drift(tracks)
+        if drift.noticed:
+            say(f"{drift}" + ("" if remove_drift else "; --remove-drift takes it off"))
+        if remove_drift:
+            tracks = cc.observables.without_drift(tracks, drift)
+            say(tracks.source.notes[-1])
+    with _progress(len(tracks)) as told:
+        rows = [
+            _Row(str(file), named.track, named.result, named.reason, tracks.source.y_down)
+            for named in classify_all(tracks, cell_radius, told)
+        ]
+    rows += [_Row(str(file), one.what, None, one.reason) for one in tracks.left_out]
+    return rows
+
+
+def _is_a_graph(file: Path) -> bool:
+    """Whether a .zarr folder is a graph of tracks (GEFF), not a run."""
+    from cellcrawl.microscopy.recognise import is_geff
+
+    return is_geff(file)
+
+
+def _print(rows: list[_Row]) -> None:
+    shown = rows if len(rows) <= _SHOWN else rows[:_SHOWN]
+    wide = max(len("file"), *(len(row.label) for row in shown)) if shown else len("file")
+    say(f"{'file':{wide}}  mode        sure  turned  swings  period  speed   seen by")
+    for row in shown:
+        if row.result is None:
+            say(f"{row.label:{wide}}  -           not named: {row.reason}")
+            continue
+        seen = row.result.measures
+        say(
+            f"{row.label:{wide}}  {row.result.mode:10}  {row.result.confidence:4.2f}  "
+            f"{_cell(math.degrees(seen.turned), '+.0f'):>6}  {seen.swings:6}  "
+            f"{_cell(seen.period, '.3g'):>6}  {_cell(seen.speed, '.3g'):6}  "
+            f"{row.result.summary(y_down=row.y_down)}"
+        )
+    if len(rows) > len(shown):
+        say(f"... and {len(rows) - len(shown)} more: --output TABLE holds them all")
+
+
+@contextlib.contextmanager
+def _progress(total: int) -> Iterator[Callable[[int], None]]:
+    """A bar over many tracks where somebody looks at it."""
+    if total < _SHOWN or not wants_progress():
+        yield lambda count: None
         return
-    for name, (t, x, y) in _tracks(file).items():
-        label = f"{file} {name}".rstrip()
-        with _complaints_name(label):
-            yield label, cc.classify_track(t, x, y, cell_radius=cell_radius)
+    from tqdm.auto import tqdm
+
+    with tqdm(total=total, unit="track") as bar:
+        yield bar.update
 
 
 @contextlib.contextmanager
@@ -92,47 +181,21 @@ def _complaints_name(label: str) -> Iterator[None]:
         raise InputError(f"{label}: {error}") from None
 
 
-def _tracks(file: Path) -> dict[str, tuple[list[float], list[float], list[float]]]:
-    """Read the tracks of a table, by the value of its column "track"."""
-    try:
-        text = file.read_text("utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        why = error.strerror if isinstance(error, OSError) else "it is not text"
-        raise InputError(f"cannot read {file}: {why}; give runs (.nc, .zarr) or .csv") from None
-    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
-    first = lines[0] if lines else ""
-    separator = max(",;\t", key=first.count)
-    rows = csv.DictReader(lines, delimiter=separator, skipinitialspace=True)
-    names = {name.strip().lower(): name for name in rows.fieldnames or () if name}
-    missing = [column for column in _COLUMNS if column not in names]
-    if missing:
-        raise InputError(
-            f"{file} has no column {missing[0]!r}: its first line must name the columns t, x, y"
-        )
-    tracks: dict[str, tuple[list[float], list[float], list[float]]] = {}
-    for number, row in enumerate(rows, start=2):
-        which = str(row[names["track"]]).strip() if "track" in names else ""
-        for values, column in zip(tracks.setdefault(which, ([], [], [])), _COLUMNS, strict=True):
-            cell = row[names[column]]
-            try:
-                values.append(float(cell))
-            except (TypeError, ValueError):
-                raise InputError(
-                    f"{file}, row {number}: {column} = {cell!r} is not a number"
-                ) from None
-    if not tracks:
-        raise InputError(f"{file} has no rows below its column names")
-    return tracks
+def _about(label: str, reason: str) -> str:
+    return reason if label in reason else f"{label}: {reason}"
 
 
-def _write(output: Path, found: list[tuple[str, Classification]]) -> None:
-    rows = [{"file": name, **result.as_row()} for name, result in found]
+def _write(output: Path, rows: list[_Row]) -> None:
+    named = next(row.result for row in rows if row.result is not None)
+    columns = ["file", "track", *named.as_row(), "reason"]
     partial = output.with_name(f".{output.name}.part")
     try:
         with partial.open("w", encoding="utf-8", newline="") as stream:
-            table = csv.DictWriter(stream, list(rows[0]))
+            table = csv.DictWriter(stream, columns)
             table.writeheader()
-            table.writerows(rows)
+            for row in rows:
+                seen = {} if row.result is None else row.result.as_row()
+                table.writerow({"file": row.file, "track": row.track, **seen, "reason": row.reason})
         partial.replace(output)
     except OSError as error:
         partial.unlink(missing_ok=True)

@@ -60,17 +60,28 @@ def plot(
 ) -> None:
     """Draw the run in FILE, which may be the folder that holds it, or a sweep's folder.
 
+    The tracks in a table are drawn as `cellcrawl tracks` does.
+
     \b
     Examples
       cellcrawl plot cellcrawl-run                         the summary page
+      cellcrawl plot cells.csv                             a sheet of tracks
       cellcrawl plot run.nc --kind path --output path.pdf  contours along the cell's path
       cellcrawl plot run.nc --kind kymographs --origin material
       cellcrawl plot run.nc --kind snapshots --time 0,5,10 --width 3.4 --font-size 9
       cellcrawl plot phase_diagram --kind speed            a map of a sweep
     """
     import cellcrawl as cc
+    from cellcrawl.command_line.tracks import RUNS, draw_sheet
 
     chosen: dict[str, Any] = {"limits": limits_from(limits), "time": _times(time), **options}
+    if file.suffix not in RUNS and file.is_file():
+        given = [name for name, value in {"kind": kind, **chosen}.items() if value is not None]
+        if given:
+            raise InputError(f"--{given[0]} means nothing for tracks")
+        with look.used():
+            draw_sheet(file, output, dpi)
+        return
     found = sweep_in(file)
     if found is not None:
         kind = kind or _DIAGRAM

@@ -41,7 +41,7 @@ def verify(
 
     Prints what was expected and what was measured. "ok" holds; "no" is a claim of the paper that is
     known not to hold and still does not; "FAILS" is anything else, and makes the exit code 3. The
-    whole takes under five minutes on two cores.
+    whole takes under six minutes on two cores.
 
     \b
     Examples

@@ -1,6 +1,7 @@
 """The cell edge: a closed curve with equally spaced nodes."""
 
 from cellcrawl.curve.construct import (
+    SelfCrossing,
     from_path,
     from_polar,
     from_polygon,
@@ -13,6 +14,7 @@ from cellcrawl.curve.equal_arclength import Curve
 __all__ = [
     "Crossing",
     "Curve",
+    "SelfCrossing",
     "first_crossing",
     "from_path",
     "from_polar",

@@ -18,6 +18,10 @@ LARGEST = 1e12  # coordinates of an outline
 _AREA_LOST = 0.01  # share of the area at which nodes are too few to show a shape
 
 
+class SelfCrossing(InputError):
+    """An outline that crosses or touches itself, as given or once smoothed."""
+
+
 def from_path(path: np.ndarray, nodes: int) -> tuple[Curve, np.ndarray]:
     """Curve through a smooth closed path, and the path's parameter at each node.
 
@@ -146,7 +150,7 @@ def from_polygon(xy: Any, nodes: int, smoothing: float = 0.01) -> Curve:
     smooth = np.fft.ifft(np.fft.fft(path) * np.exp(-0.5 * (2.0 * math.pi * width * k) ** 2))
     curve = from_path(smooth, nodes)[0]
     if first_crossing(curve.points) is not None:
-        raise InputError("the outline crosses itself once smoothed: give a smaller smoothing")
+        raise SelfCrossing("the outline crosses itself once smoothed: give a smaller smoothing")
     size = math.sqrt(polygon_area(vertices) / curve.area)
     origin = curve.centroid + size * (curve.origin - curve.centroid)
     return Curve(curve.theta, size * curve.length, origin)
@@ -169,7 +173,7 @@ def simple_polygon(xy: Any) -> np.ndarray:
     crossing = first_crossing(vertices)
     if crossing is not None:
         first, second = crossing.edges
-        raise InputError(
+        raise SelfCrossing(
             f"the outline crosses or touches itself: edges {first} and {second} meet near "
             f"({crossing.point[0]:.4g}, {crossing.point[1]:.4g})"
         )

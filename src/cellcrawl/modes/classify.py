@@ -10,6 +10,8 @@ import numpy as np
 import xarray as xr
 
 from cellcrawl.modes import rule
+from cellcrawl.modes.confidence import trust
+from cellcrawl.modes.evidence import Evidence, gather
 from cellcrawl.modes.measures import measure, measure_rest, onset
 from cellcrawl.modes.result import STEADY_SPIN, Classification, Measures
 from cellcrawl.observables.inputs import records_with
@@ -25,10 +27,9 @@ SHORTEST_RUN = 50.0
 """Runs of the model shorter than this, in 1/k_off0, may not have come to their mode."""
 _LATER_STARTS = (0.0, 1 / 9, 2 / 9, 3 / 9)
 """Where the transient may end, as parts of what follows the onset."""
+_SHORT, _LONG = 24, 60  # records up to which none of these, and only the last, is tried
 _PREFER_EARLY = 0.3  # a start that leaves out the part p must fit better by this times p
 _FEW_TURNS = 3  # a track that has turned less often, and less than once round, may be any mode
-_UNTOLD = 0.6  # the confidence it can have
-_LAST = 1e-3  # a score below that of every mode that fits
 _CUT_SHORT = 0.5  # the confidence that a run which failed can have
 _FAILURES = tuple(set(STATUSES) - {"completed", "fragmented", "interrupted", "running"})
 
@@ -122,26 +123,77 @@ def is_long_enough(dataset: xr.Dataset) -> bool:
 
 def _classify(track: Track, cell_radius: float | None) -> Classification:
     smoothed = smooth(track)
-    still = measure_rest(track, smoothed.noise)
-    at_rest = max(rule.stationary(still, cell_radius), key=_fit)
+    named, evidence = name_by_rule(smoothed)
+    found = _with_confidence(named, evidence)
+    if cell_radius is not None:
+        found = _with_size(found, cell_radius)
+    return replace(found, doubt=_joined(found.doubt, _told_of(smoothed.sound.wild, track)))
+
+
+def _with_confidence(named: Classification, evidence: Evidence) -> Classification:
+    """Say how often such an answer is right, and take it back if "other" is right more often."""
+    found = trust(named.mode, evidence)
+    doubt = _joined(named.doubt, found.against)
+    if found.mode != named.mode:
+        why = found.against or named.doubt or "too little to tell"
+        doubt = f"not surely {named.mode}: {why}"
+    return replace(named, mode=found.mode, confidence=found.confidence, doubt=doubt)
+
+
+def _with_size(named: Classification, cell_radius: float) -> Classification:
+    """Judge by the size of the cell too: it enters as it fits, for it is no matter of chance."""
+    still, wide = rule.against_size(named.measures, cell_radius)
+    if still.fit >= 0.5:
+        sure = max(still.fit, named.confidence if named.mode == "stationary" else 0.0)
+        return replace(named, mode="stationary", confidence=sure, doubt=still.words)
+    if named.mode != "rotational":
+        return replace(named, confidence=named.confidence * (1.0 - still.fit))
+    fits = {**named.memberships, "rotational": min(named.memberships["rotational"], wide.fit)}
+    if wide.fit >= 0.5:
+        sure = named.confidence * wide.fit
+        doubt = _joined(named.doubt, wide.words if wide.fit < 1.0 else "")
+        return replace(named, confidence=sure, doubt=doubt, memberships=fits)
+    sure = 1.0 - named.confidence * wide.fit
+    doubt = _joined(f"not rotational: {wide.words}", named.doubt)
+    return Classification("other", sure, fits, named.measures, doubt, STEADY_SPIN)
+
+
+def _told_of(wild: tuple[int, ...], track: Track) -> str:
+    """Say which records were left out because they lie far off the path."""
+    if not wild:
+        return ""
+    which = ", ".join(f"{record} (t = {track.t[record]:g})" for record in wild)
+    records = "records" if len(wild) > 1 else "record"
+    return f"{records} {which} left out: far off the path, as by a wrong link"
+
+
+def _joined(*doubts: str) -> str:
+    return ", ".join(dict.fromkeys(filter(None, doubts)))
+
+
+def name_by_rule(smoothed: SmoothTrack) -> tuple[Classification, Evidence]:
+    """Name the form of a track by the rule, as sure as it fits, and gather the evidence."""
+    still = measure_rest(smoothed.sound.clean, smoothed.noise)
+    at_rest = max(rule.stationary(still), key=_fit)
     if at_rest.fit >= 0.5:
-        return Classification("stationary", at_rest.fit, {}, still, at_rest.words)
+        named = Classification("stationary", at_rest.fit, {}, still, at_rest.words)
+        return named, gather(smoothed, still, still, {"stationary": at_rest.fit, "": 0.0})
     first = onset(smoothed)
     left = smoothed.t.size - first
-    starts = _LATER_STARTS if left > 2 * FEWEST_RECORDS else _LATER_STARTS[:1]
-    best = _apply_rule(smoothed, first, cell_radius)
+    starts = _LATER_STARTS if left >= _LONG else _LATER_STARTS[:: 3 if left > _SHORT else 4]
+    best = _apply_rule(smoothed, first)
     best_score = _score(best, 0.0)
     for later in starts[1:]:
         if best_score >= 1.0 - _PREFER_EARLY * later:
             break
-        result = _apply_rule(smoothed, first + int(later * left), cell_radius)
+        result = _apply_rule(smoothed, first + int(later * left))
         if _score(result, later) > best_score:
             best, best_score = result, _score(result, later)
-    clear = min(1.0 - at_rest.fit, rule.resolved(best.measures).fit)
     seen = replace(
         best.measures, extent=still.extent, late_extent=still.late_extent, disorder=still.disorder
     )
-    return replace(best, confidence=min(best.confidence, clear), measures=seen)
+    best = replace(best, measures=seen)
+    return best, gather(smoothed, seen, still, best.memberships)
 
 
 def _ended(found: Classification, status: str, time: float) -> Classification:
@@ -154,17 +206,14 @@ def _ended(found: Classification, status: str, time: float) -> Classification:
 
 
 def _score(result: Classification, later: float) -> float:
-    early = result.confidence - _PREFER_EARLY * later
-    if result.mode == "other":  # any other mode goes before
-        return _LAST * early if result.detail else 0.0
-    return early
+    return result.confidence - _PREFER_EARLY * later if result.mode != "other" else 0.0
 
 
-def _apply_rule(track: SmoothTrack, start: int, cell_radius: float | None) -> Classification:
+def _apply_rule(track: SmoothTrack, start: int) -> Classification:
     found = measure(track, start)
     conditions = {
         "gliding": rule.gliding(found),
-        "rotational": rule.rotational(found, cell_radius),
+        "rotational": rule.rotational(found),
         "zigzag": rule.zigzag(found),
     }
     fits = {mode: min(map(_fit, held)) for mode, held in conditions.items()}
@@ -180,13 +229,9 @@ def _apply_rule(track: SmoothTrack, start: int, cell_radius: float | None) -> Cl
         conditions, key=lambda name: sum(map(_fit, conditions[name])) / len(conditions[name])
     )
     doubt = f"not {nearest}: {min(conditions[nearest], key=_fit).words}"
-    sure = 1.0 - fits[mode]
-    *turning, circle = conditions["rotational"]
-    if cell_radius is not None and min(map(_fit, turning)) >= 0.5 > circle.fit:
-        return Classification("other", sure, fits, found, doubt, STEADY_SPIN)
     if found.swings < _FEW_TURNS and abs(found.turned) < 2.0 * math.pi:
-        sure, doubt = min(sure, _UNTOLD), "it turns too few times to tell"
-    return Classification("other", sure, fits, found, doubt)
+        doubt = "it turns too few times to tell"
+    return Classification("other", 1.0 - fits[mode], fits, found, doubt)
 
 
 def _fit(condition: rule.Condition) -> float:

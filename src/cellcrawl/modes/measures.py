@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from cellcrawl.modes.result import Measures
+from cellcrawl.observables.noise import median
 from cellcrawl.observables.smoothing import SmoothTrack
 from cellcrawl.observables.track import Track
 from cellcrawl.observables.turns import Swings, crossing_times, swings_of
@@ -15,21 +16,26 @@ SMALLEST_SWING = math.radians(20.0)
 """Swings of the heading smaller than this are not turns."""
 _NOISE_RANGE = 6.0  # peak to peak of a heading that only has noise, over its standard deviation
 _FIRST_MOVES = 0.25  # of the time: a cell may come to rest, or move into place, meanwhile
+_ENOUGH = 30  # records for order to be seen in; of fewer the first quarter counts too
 _ROUNDING = 1e-9
 _ONSET = 0.5  # the cell has begun to crawl at this fraction of its later median speed
 
 
 def onset(track: SmoothTrack) -> int:
     """Return the first record at which the cell crawls at half its later median speed."""
-    later = float(np.median(track.speed[track.speed.size // 2 :]))
+    later = median(track.speed[track.speed.size // 2 :])
     return max(int(np.argmax(track.speed >= _ONSET * later)), track.unsure)
 
 
 def measure_rest(track: Track, noise: float) -> Measures:
-    """Measure whether a cell moves at all, after the first quarter of the time."""
+    """Measure whether a cell moves at all, after the first quarter of the time.
+
+    Of a short track all records count for the order of its positions.
+    """
     after = int(np.searchsorted(track.t, track.t[0] + _FIRST_MOVES * track.duration))
     places = np.stack([track.x, track.y])
-    around = places[:, after:] - places[:, after:].mean(axis=1, keepdims=True)
+    settled = after if track.t.size - after >= _ENOUGH else 0
+    around = places[:, settled:] - places[:, settled:].mean(axis=1, keepdims=True)
     whole, extent = _extent(places), _extent(places[:, after:])
     # Positions far from the origin carry their rounding.
     moves = extent > _ROUNDING * float(np.abs(places).max())
@@ -80,7 +86,7 @@ def measure(track: SmoothTrack, first: int) -> Measures:
         turning_rate=turned / float(times[-1] - times[0]),
         circling_radius=path / abs(turned) if turned else math.inf,
         period=2.0 * _mean(intervals) if intervals.size else math.nan,
-        speed=float(np.median(track.speed[used])),
+        speed=median(track.speed[used]),
         straightness=net / path if path > 0.0 else 0.0,
         noise=track.noise,
         heading_error=track.heading_error,

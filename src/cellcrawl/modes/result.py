@@ -98,14 +98,15 @@ class Classification:
     mode : str
         One of `MODES`.
     confidence : float
-        From 0 to 1; below about 0.7 a second look is due. It is how far the measures are from
-        the rule's thresholds, not a probability.
+        From 0 to 1: of answers with confidence p to tracks of known mode, p are right. What the
+        size of the cell or a tear says is not a matter of chance and enters as it fits the rule.
     memberships : dict
         How well gliding, rotational and zigzag each fit, from 0 to 1.
     measures : Measures
         What the rule looked at.
     doubt : str
-        The condition that holds least, in words; "" if all hold fully.
+        The condition that holds least and, of an answer that is not sure, what speaks against it,
+        in words; "" if all hold fully.
     detail : str
         A finer word beside the mode, one of `DETAILS`; "" if there is none.
     """
@@ -122,14 +123,18 @@ class Classification:
         row = {"mode": self.mode, "confidence": self.confidence, **asdict(self.measures)}
         return {**row, "doubt": self.doubt, "detail": self.detail}
 
-    def summary(self) -> str:
-        """Return what the mode was seen by, in a few words."""
-        told = self._told()
+    def summary(self, *, y_down: bool = False) -> str:
+        """Return what the mode was seen by, in a few words.
+
+        Left and right are those of the screen: with ``y_down``, as in an image, a positive net
+        change of heading is a turn to the right.
+        """
+        told = self._told(y_down)
         return "; but ".join(part for part in (told, self.doubt) if part)
 
-    def _told(self) -> str:
+    def _told(self, y_down: bool) -> str:
         seen = self.measures
-        side = "left" if seen.turned > 0.0 else "right"
+        side = "left" if (seen.turned > 0.0) != y_down else "right"
         match self.mode:
             case "gliding":
                 return f"turned {abs(math.degrees(seen.turned)):.0f} degrees in all"

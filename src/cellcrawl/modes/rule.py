@@ -20,20 +20,30 @@ class Condition(NamedTuple):
     fit: float
 
 
-def stationary(found: Measures, cell_radius: float | None = None) -> list[Condition]:
+def stationary(found: Measures) -> list[Condition]:
     """Return the conditions of a cell at rest, of which any one is enough.
 
     Of positions without order, the mean square distance of successive ones is twice their variance;
     on a path they are much nearer to each other than that.
     """
-    conditions = [
-        _above("its positions scatter without order", found.disorder, 1.0, 0.4),
+    return [
+        _above("its positions scatter without order", found.disorder, 1.3, 0.35),
         _below("it came to rest", found.late_extent, 0.02, 0.01),
     ]
-    if cell_radius is not None:
-        moved = found.extent / cell_radius
-        conditions.append(_below("it moves by less than its size", moved, 0.05, 0.03))
-    return conditions
+
+
+def against_size(found: Measures, cell_radius: float) -> tuple[Condition, Condition]:
+    """Return the conditions of a cell that stays in place, and of one that goes round a circle.
+
+    The centroid of a rotating cell must go round a circle wider than the cell: one that spins
+    within its own outline goes nowhere.
+    """
+    moved = found.extent / cell_radius
+    circle = found.circling_radius / cell_radius
+    return (
+        _below("it moves by less than its size", moved, 0.05, 0.03),
+        _above("it spins within its own outline", circle, 1.0, 0.25),
+    )
 
 
 def gliding(found: Measures) -> list[Condition]:
@@ -44,21 +54,13 @@ def gliding(found: Measures) -> list[Condition]:
     ]
 
 
-def rotational(found: Measures, cell_radius: float | None = None) -> list[Condition]:
-    """Return the conditions of "turns only towards one direction".
-
-    Where the size of the cell is known, its centroid must go round a circle wider than the cell: a
-    cell that spins within its own outline goes nowhere.
-    """
-    conditions = [
+def rotational(found: Measures) -> list[Condition]:
+    """Return the conditions of "turns only towards one direction"."""
+    return [
         _above("it turns too little in all", abs(found.turned), _rad(60.0), _rad(30.0)),
         _below("it turns back at times", found.counter_turn, _rad(45.0), _rad(20.0)),
         _below("it turns by fits and starts", found.unevenness, 0.4, 0.24),
     ]
-    if cell_radius is not None:
-        circle = found.circling_radius / cell_radius
-        conditions.append(_above("it spins within its own outline", circle, 1.0, 0.25))
-    return conditions
 
 
 def zigzag(found: Measures) -> list[Condition]:
@@ -75,11 +77,6 @@ def zigzag(found: Measures) -> list[Condition]:
         _below("its swings differ in size", found.angle_spread, 0.4, 0.25),
         _below("its swings differ in time", found.interval_spread, 0.4, 0.25),
     ]
-
-
-def resolved(found: Measures) -> Condition:
-    """Return whether the heading is known well enough to tell."""
-    return _below("noise hides its heading", found.heading_error, 0.15, 0.1)
 
 
 def _above(words: str, value: float, threshold: float, width: float) -> Condition:

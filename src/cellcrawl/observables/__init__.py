@@ -9,6 +9,8 @@ say where the measure misleads.
 from cellcrawl.observables.asymmetry import front_rear_asymmetry, left_right_asymmetry
 from cellcrawl.observables.displacement import mean_squared_displacement
 from cellcrawl.observables.distance import mean_distance, straightness
+from cellcrawl.observables.drift import Drift, shared_drift, without_drift
+from cellcrawl.observables.edges import edge_series
 from cellcrawl.observables.fourier import fourier_amplitude
 from cellcrawl.observables.front import front_position
 from cellcrawl.observables.kymograph import kymograph
@@ -20,15 +22,22 @@ from cellcrawl.observables.oscillation import (
     tension_oscillation,
 )
 from cellcrawl.observables.persistence import Persistence, persistence, velocity_correlation
+from cellcrawl.observables.random_walk import Estimate, PersistentWalk, persistent_walk
 from cellcrawl.observables.shape import aspect_ratio, circularity
+from cellcrawl.observables.shape_modes import ShapeModes, shape_modes
 from cellcrawl.observables.turns import turning_events
 
 __all__ = [
+    "Drift",
+    "Estimate",
     "Oscillation",
     "Persistence",
+    "PersistentWalk",
+    "ShapeModes",
     "aspect_ratio",
     "centroid_velocity",
     "circularity",
+    "edge_series",
     "fourier_amplitude",
     "front_position",
     "front_rear_asymmetry",
@@ -40,10 +49,14 @@ __all__ = [
     "mean_squared_displacement",
     "oscillation",
     "persistence",
+    "persistent_walk",
+    "shape_modes",
+    "shared_drift",
     "speed",
     "straightness",
     "tension_oscillation",
     "turning_events",
     "turning_rate",
     "velocity_correlation",
+    "without_drift",
 ]

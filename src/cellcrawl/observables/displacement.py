@@ -11,7 +11,10 @@ from cellcrawl.errors import InputError
 from cellcrawl.observables.track import Track, as_track
 from cellcrawl.validation import real_number
 
-_EVEN = 1e-6  # of the interval: times that differ by no more from even ones are even
+_ON_GRID = 0.02  # of the interval: times no farther from its multiples are frames, some dropped
+_FINEST = 24  # frames in the shortest step between records; beyond that times are uneven
+_MOST_FRAMES = 20  # per record
+_LEAST_POWER = 0.1  # flatter or falling curves have no power law within a bin
 
 
 def mean_squared_displacement(
@@ -48,12 +51,16 @@ def mean_squared_displacement(
     *independent* windows, duration over lag, not with ``windows``; at a quarter of the duration it
     is about 45 percent for Brownian motion, which is why longer lags are left out.
     Localisation error ``s`` along each axis adds ``4 s**2`` at every lag and hides slow motion at
-    short ones. At uneven times pairs are sorted into bins one median interval wide and the lag is
-    their mean; no position is interpolated.
+    short ones. Dropped frames change nothing: each lag is a number of frames, all pairs of records
+    so far apart count, and lags that never occur are left out. At truly uneven times pairs are
+    sorted into bins one median interval wide; the lag of a bin is the power mean of the lags in it,
+    for the power with which the curve grows there, so that a power law comes out as it is. No
+    position is interpolated.
     """
     track = as_track(run, x, y, at_least=3)
-    intervals = np.diff(track.t)
-    interval = float(np.median(intervals))
+    frames, interval = _frames(track.t)
+    if frames is None:
+        interval = float(np.median(np.diff(track.t)))
     limit = max(interval, 0.25 * track.duration)
     if longest is not None:
         limit = real_number("longest", longest, 0.0, track.duration * (1.0 + 1e-9), open_low=True)
@@ -61,8 +68,10 @@ def mean_squared_displacement(
             raise InputError(
                 f"longest = {longest:g} is below the interval between records, {interval:g}"
             )
-    even = bool(np.ptp(intervals) <= _EVEN * interval)
-    lags, squares, windows = (_even_lags if even else _uneven_lags)(track, interval, limit)
+    if frames is None:
+        lags, squares, windows = _uneven_lags(track, interval, limit)
+    else:
+        lags, squares, windows = _frame_lags(track, frames, interval, limit)
     number = np.maximum(1, np.round(lags / interval).astype(int))
     return xr.DataArray(
         squares,
@@ -71,7 +80,7 @@ def mean_squared_displacement(
             "windows": ("lag", windows, {"long_name": "pairs of records"}),
             "relative_error": (
                 "lag",
-                _brownian_error(number, track.t.size - 1),
+                _brownian_error(number, round(track.duration / interval)),
                 {"long_name": "relative error if the motion were Brownian", "units": "1"},
             ),
         },
@@ -84,24 +93,62 @@ def mean_squared_displacement(
     )
 
 
-def _even_lags(
-    track: Track, interval: float, longest: float
+def _frames(times: np.ndarray) -> tuple[np.ndarray | None, float]:
+    """Return the frame number of each record and the time between frames; None if uneven."""
+    steps = np.diff(times)
+    shortest = float(steps.min())
+    tolerance = _ON_GRID * shortest
+    interval = shortest
+    for step in np.unique(np.round(steps / tolerance)) * tolerance:
+        interval = _common(interval, float(step), 2.0 * tolerance)
+        if interval * _FINEST < shortest:
+            return None, 0.0
+    for _ in range(2):
+        number = np.round((times - times[0]) / interval)
+        interval = float(times[-1] - times[0]) / float(number[-1])
+    off = np.abs(times - times[0] - number * interval)
+    if float(off.max()) > _ON_GRID * interval or number[-1] > _MOST_FRAMES * times.size:
+        return None, 0.0
+    return number.astype(int), interval
+
+
+def _common(a: float, b: float, tolerance: float) -> float:
+    """Return the greatest common divisor of two times, by Euclid's algorithm."""
+    while b > tolerance:
+        left = a % b
+        a, b = b, left if left < b - tolerance else 0.0
+    return a
+
+
+def _frame_lags(
+    track: Track, frames: np.ndarray, interval: float, longest: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    number = np.arange(1, min(track.t.size - 1, int(longest / interval + 1e-6)) + 1)
-    squares = np.array(
-        [
-            np.mean((track.x[k:] - track.x[:-k]) ** 2 + (track.y[k:] - track.y[:-k]) ** 2)
-            for k in number.tolist()
-        ]
-    )
-    return number * interval, squares, track.t.size - number
+    """Average over all pairs of records that are as many frames apart, lag by lag."""
+    size = int(frames[-1]) + 1
+    seen = np.zeros(size, dtype=bool)
+    seen[frames] = True
+    t, x, y = (np.zeros(size) for _ in range(3))
+    t[frames], x[frames], y[frames] = track.t, track.x, track.y
+    last = min(size - 1, int(longest / interval + 1e-6))
+    rows = []
+    for k in range(1, last + 1):
+        both = seen[k:] & seen[:-k]
+        pairs = int(np.count_nonzero(both))
+        if pairs == 0:
+            continue
+        square = (x[k:] - x[:-k]) ** 2 + (y[k:] - y[:-k]) ** 2
+        rows.append(
+            (float((t[k:] - t[:-k]) @ both) / pairs, float(square @ both) / pairs, float(pairs))
+        )
+    lags, squares, windows = np.array(rows).reshape(-1, 3).T
+    return lags, squares, windows.astype(int)
 
 
 def _uneven_lags(
     track: Track, interval: float, longest: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     bins = int(longest / interval + 0.5) + 1
-    counts, times, squares = np.zeros(bins), np.zeros(bins), np.zeros(bins)
+    found = []
     for k in range(1, track.t.size):
         apart = track.t[k:] - track.t[:-k]
         if apart.min() > longest + 0.5 * interval:
@@ -109,16 +156,28 @@ def _uneven_lags(
         square = (track.x[k:] - track.x[:-k]) ** 2 + (track.y[k:] - track.y[:-k]) ** 2
         place = np.round(apart / interval).astype(int)
         inside = (place > 0) & (place < bins)
-        place = place[inside]
-        counts += np.bincount(place, minlength=bins)
-        times += np.bincount(place, apart[inside], bins)
-        squares += np.bincount(place, square[inside], bins)
-    found = counts > 0
-    return (
-        times[found] / counts[found],
-        squares[found] / counts[found],
-        counts[found].astype(int),
-    )
+        found.append(np.stack([place[inside], apart[inside], square[inside]]))
+    place, apart, square = np.concatenate(found, axis=1)
+    place = place.astype(int)
+    counts = np.bincount(place, minlength=bins)
+    held = counts > 0
+    counts = counts[held]
+    squares = np.bincount(place, square, bins)[held] / counts
+    lags = np.bincount(place, apart, bins)[held] / counts
+    if lags.size > 1:
+        power = np.full(bins, np.nan)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            power[held] = np.gradient(np.log(squares), np.log(lags))
+        power[~((power >= _LEAST_POWER) & (power <= 2.0))] = np.nan
+        relative = apart / (place * interval)
+        raised = _known(power[place])
+        means = np.bincount(place, relative**raised, bins)[held] / counts
+        lags = np.flatnonzero(held) * interval * means ** (1.0 / _known(power[held]))
+    return lags, squares, counts
+
+
+def _known(power: np.ndarray) -> np.ndarray:
+    return np.where(np.isnan(power), 1.0, power)
 
 
 def _brownian_error(n: np.ndarray, steps: int) -> np.ndarray:

@@ -20,9 +20,10 @@ _ROUNDING = 1e-12
 def centroid_velocity(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
     """Return the velocity of the centroid.
 
-    Of a run: that of the area centroid, from the edge of each record alone, ``dc/dt = (1/A) *
-    integral of (x - c) U ds`` with the outward normal velocity ``U``: exact, no difference in time
-    is taken. Of a track: differences in time, central where there are neighbours.
+    Of outlines (`edge_series`) and of a track: differences in time, central where there are
+    neighbours. Of a run: that of the area centroid, from the edge of each record alone,
+    ``dc/dt = (1/A) * integral of (x - c) U ds`` with the outward normal velocity ``U``: exact, no
+    difference in time is taken.
 
     Parameters
     ----------
@@ -49,6 +50,8 @@ def centroid_velocity(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
     """
     if x is not None or not isinstance(run, xr.Dataset):
         return _velocity_of_track(as_track(run, x, y))
+    if run.attrs.get("kind") == "outlines":
+        return _velocity_of_track(as_track(run))
     records_with(run, "x", "y", "normal_velocity", "area", "length", "centroid_x", "centroid_y")
     outward = run["normal_velocity"].values
     per_area = (run["length"] / run["area"]).values
@@ -182,8 +185,13 @@ def _velocity_of_track(track: Track) -> xr.DataArray:
         {"time": track.t, "component": ["x", "y"]},
         ("time", "component"),
         "centroid_velocity",
-        {"long_name": "velocity of the centroid", "units": ""},
+        {"long_name": "velocity of the centroid", "units": _over(track)},
     )
+
+
+def _over(track: Track) -> str:
+    both = track.length_units and track.time_units
+    return f"{track.length_units}/{track.time_units}" if both else ""
 
 
 def _size(velocity: np.ndarray) -> np.ndarray:

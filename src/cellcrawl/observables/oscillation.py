@@ -13,7 +13,7 @@ from cellcrawl.observables.inputs import records_with
 from cellcrawl.observables.smoothing import smooth
 from cellcrawl.observables.track import Track, as_track
 from cellcrawl.observables.turns import Swings, crossing_times, swings_of
-from cellcrawl.validation import real_array, real_number
+from cellcrawl.validation import real_array, real_number, without_masked
 
 _TRANSIENT = 0.25  # part of the time left out at the beginning unless said otherwise
 _HYSTERESIS = 0.3  # of the range: smaller ups and downs are ripples
@@ -70,6 +70,7 @@ def oscillation(t: Any, values: Any, *, after: float | None = None) -> Oscillati
     faster one is found. Any signal has ups and downs, noise too: trust the period only where the
     irregularity is well below 0.3 and there are several cycles.
     """
+    t, values = without_masked(t, values)
     signal = as_track(
         t, values, np.zeros_like(real_array("values", values, (None,))), at_least=_FEWEST
     )
@@ -156,7 +157,7 @@ def lateral_oscillation(
     when = times - times.mean()
     slope = float(when @ heading) / float(when @ when)
     across = speed * np.sin(heading - heading.mean() - slope * when)
-    steps = 0.5 * (across[1:] + across[:-1]) * np.diff(times)
+    steps = 0.5 * (across[1:] + across[:-1]) * smoothed.step
     return oscillation(times, np.concatenate([[0.0], np.cumsum(steps)]), after=float(times[0]))
 
 

@@ -123,13 +123,15 @@ def velocity_correlation(
     moves = np.stack([np.cos(smoothed.heading), np.sin(smoothed.heading)])
     if kind == "velocity":
         moves = moves * smoothed.speed
+    even = np.linspace(smoothed.t[0], smoothed.t[-1], size)
+    moves = np.stack([np.interp(even, smoothed.t, values) for values in moves])
     lags = size // 2
     spectrum = np.fft.rfft(moves, 2 * size, axis=1)
     products = np.fft.irfft(np.abs(spectrum) ** 2, 2 * size, axis=1)[:, :lags].sum(axis=0)
     products /= size - np.arange(lags)
     if products[0] > 0.0:
         products /= products[0]
-    step = float(smoothed.t[1] - smoothed.t[0])
+    step = float(even[1] - even[0])
     return xr.DataArray(
         products,
         {

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cellcrawl.observables.noise import RAYLEIGH, median
+from cellcrawl.observables.records import SoundTrack, sound
 from cellcrawl.observables.track import Track
 
 HEADING_ERROR = 0.04
@@ -15,23 +17,28 @@ _WIDEST = 0.08  # of the duration: smoothing never goes beyond, or nothing would
 _ITERATIONS = 6
 _NARROWEST = 0.3  # of the sampling interval: narrower smoothing changes nothing
 _ROUGH = 1.5  # smoothing that removes more than this many times the noise removes motion
-_RAYLEIGH = 1.17741  # median distance in the plane over the standard deviation along an axis
 
 
 @dataclass(frozen=True, eq=False)
 class SmoothTrack:
     """A track on even times after smoothing, and its motion.
 
+    Times are even on a clock that stands still during pauses.
+
     Attributes
     ----------
     t, x, y, speed, heading : ndarray, shape (record,)
-        Even times, positions, speed, and direction of motion in rad, unwrapped.
+        Times, positions, speed on the move, and direction of motion in rad, unwrapped.
+    step : float
+        Time from one record to the next, pauses left out.
     noise : float
         Estimated error of one recorded position along each axis.
     width : float
         Standard deviation of the Gaussian the track was smoothed with, in units of time.
     heading_error : float
         Expected error of the heading at the median speed, in rad; infinite at rest.
+    sound : SoundTrack
+        The records it was made of, and those left out.
     """
 
     t: np.ndarray
@@ -39,33 +46,16 @@ class SmoothTrack:
     y: np.ndarray
     speed: np.ndarray
     heading: np.ndarray
+    step: float
     noise: float
     width: float
     heading_error: float
+    sound: SoundTrack
 
     @property
     def unsure(self) -> int:
         """How many records at each end are smoothed over fewer neighbours than the others."""
-        return min(round(2.0 * self.width / float(self.t[1] - self.t[0])), self.t.size // 4)
-
-
-def position_noise(track: Track) -> float:
-    """Return the error of a recorded position, standard deviation along one axis.
-
-    From how far each record lies from the cubic through its four neighbours: exact for any
-    smooth motion recorded often enough, at even or uneven times. The median is taken, so that
-    sharp turns and single wild records do not count.
-
-    Notes
-    -----
-    Motion that is rough at the sampling interval itself, such as Brownian motion, looks like noise.
-    """
-    if track.t.size < 7:
-        return 0.0
-    weights = _neighbour_weights(track.t)
-    scale = np.sqrt(1.0 + np.sum(weights**2, axis=0))
-    apart = np.hypot(_residual(track.x, weights), _residual(track.y, weights)) / scale
-    return float(np.median(apart)) / _RAYLEIGH
+        return min(round(2.0 * self.width / self.step), self.t.size // 4)
 
 
 def smooth(track: Track) -> SmoothTrack:
@@ -76,15 +66,20 @@ def smooth(track: Track) -> SmoothTrack:
     noise can explain; a track without noise keeps its records as they are. The error of the
     velocity of positions with error ``s`` every ``dt``, smoothed over ``w``, is
     ``sqrt(s**2 dt / (4 sqrt(pi) w**3))`` along each axis.
+
+    Wild records, repeated positions and the scatter of pauses have no heading: they are left out
+    first (see `sound`), and the track goes straight from one record that counts to the next.
     """
-    even = np.linspace(track.t[0], track.t[-1], track.t.size)
+    counted = sound(track)
+    track, clock = counted.track, counted.clock
+    even = np.linspace(clock[0], clock[-1], clock.size)
     step = float(even[1] - even[0])
-    places = np.stack([np.interp(even, track.t, values) for values in (track.x, track.y)])
-    noise = position_noise(track)
+    places = np.stack([np.interp(even, clock, values) for values in (track.x, track.y)])
+    noise = counted.noise
     gaussian = _Gaussian(places)
     width, smoothed = 0.0, places
     for _ in range(_ITERATIONS):
-        wanted = _width_for(noise, step, _pace(smoothed, step), track.duration)
+        wanted = _width_for(noise, step, _pace(smoothed, step), float(clock[-1] - clock[0]))
         if wanted <= 1.05 * width or wanted < _NARROWEST * step:
             break
         width, smoothed = wanted, gaussian.smoothed(wanted / step)
@@ -94,14 +89,16 @@ def smooth(track: Track) -> SmoothTrack:
     velocity = np.gradient(smoothed, step, axis=1, edge_order=2)
     speed = np.hypot(velocity[0], velocity[1])
     return SmoothTrack(
-        even,
+        np.interp(even, clock, track.t),
         smoothed[0],
         smoothed[1],
         speed,
         np.unwrap(np.arctan2(velocity[1], velocity[0])),
+        step,
         noise,
         width,
-        _heading_error(noise, step, width, float(np.median(speed))),
+        _heading_error(noise, step, width, median(speed)),
+        counted,
     )
 
 
@@ -126,7 +123,7 @@ class _Gaussian:
 
 def _pace(places: np.ndarray, step: float) -> float:
     moved = np.diff(places, axis=1)
-    return float(np.median(np.hypot(moved[0], moved[1]))) / step
+    return median(np.hypot(moved[0], moved[1])) / step
 
 
 def _width_for(noise: float, step: float, pace: float, duration: float) -> float:
@@ -142,7 +139,7 @@ def _width_for(noise: float, step: float, pace: float, duration: float) -> float
 def _removed(places: np.ndarray, smoothed: np.ndarray) -> float:
     """Return by how much smoothing moved the positions, as a deviation along an axis."""
     moved = places - smoothed
-    return float(np.median(np.hypot(moved[0], moved[1]))) / _RAYLEIGH
+    return median(np.hypot(moved[0], moved[1])) / RAYLEIGH
 
 
 def _heading_error(noise: float, step: float, width: float, pace: float) -> float:
@@ -154,21 +151,3 @@ def _heading_error(noise: float, step: float, width: float, pace: float) -> floa
     if width > 0.0:
         central = min(central, noise * math.sqrt(step / (4.0 * math.sqrt(math.pi) * width**3)))
     return central / pace
-
-
-def _neighbour_weights(times: np.ndarray) -> np.ndarray:
-    """Return Lagrange weights (4, record - 4) of neighbours -2, -1, 1, 2 for inner records."""
-    middle = times[2:-2]
-    near = np.stack([times[:-4], times[1:-3], times[3:-1], times[4:]])
-    weights = np.ones_like(near)
-    for i in range(4):
-        for j in range(4):
-            if i != j:
-                weights[i] *= (middle - near[j]) / (near[i] - near[j])
-    return weights
-
-
-def _residual(values: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    near = np.stack([values[:-4], values[1:-3], values[3:-1], values[4:]])
-    residual: np.ndarray = values[2:-2] - np.sum(weights * near, axis=0)
-    return residual

@@ -2,42 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from cellcrawl.errors import InputError
+from cellcrawl.microscopy.track import Track
 from cellcrawl.observables.inputs import records_with
 from cellcrawl.simulation.units import units_of
-from cellcrawl.validation import real_array
+from cellcrawl.validation import real_array, without_masked
 
-
-@dataclass(frozen=True, eq=False)
-class Track:
-    """Positions of a cell over time; the units are those of whoever measured them.
-
-    Attributes
-    ----------
-    t : ndarray, shape (record,)
-        Times, rising.
-    x, y : ndarray, shape (record,)
-        Position of the centroid.
-    length_units, time_units : str
-        Names of the units, "" where they are the user's own.
-    """
-
-    t: np.ndarray
-    x: np.ndarray
-    y: np.ndarray
-    length_units: str = ""
-    time_units: str = ""
-
-    @property
-    def duration(self) -> float:
-        """Time from the first record to the last."""
-        return float(self.t[-1] - self.t[0])
+__all__ = ["Track", "as_track"]
 
 
 def as_track(run: Any, x: Any = None, y: Any = None, *, at_least: int = 2) -> Track:
@@ -48,7 +24,8 @@ def as_track(run: Any, x: Any = None, y: Any = None, *, at_least: int = 2) -> Tr
     run : Dataset, Track or array_like, shape (record,)
         A run, or the times of a track; times must rise and need not be even.
     x, y : array_like, shape (record,), optional
-        Positions at these times; left out with a run.
+        Positions at these times; left out with a run. Records that are masked in any of the three
+        (NumPy masked arrays) are left out.
     at_least : int
         The fewest records that will do.
 
@@ -69,6 +46,7 @@ def as_track(run: Any, x: Any = None, y: Any = None, *, at_least: int = 2) -> Tr
     else:
         if x is None or y is None:
             raise InputError("a run is a Dataset; a track needs times, x and y, arrays of one size")
+        run, x, y = without_masked(run, x, y)
         times = real_array("t", run, (None,))
         track = Track(times, _positions("x", x, times.size), _positions("y", y, times.size))
     if track.t.size < at_least:

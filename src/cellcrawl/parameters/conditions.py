@@ -25,12 +25,19 @@ class Conditions:
     parameters: Parameters
     schedule: Schedule = CONSTANT
 
+    @property
+    def uniform(self) -> bool:
+        """Whether the parameters are the same all along the edge."""
+        return True
+
     def at(self, time: float) -> Parameters:
         """Return the parameters that hold from ``time`` on."""
         return self.schedule.at(self.parameters, time)
 
     def edge(self, time: float, nodes: int, *, before: bool = False) -> np.ndarray:
-        """Return the local parameters at every node, shape (len(EDGE_ROWS), nodes).
+        """Return the local parameters at equal arclengths, shape (len(EDGE_ROWS), nodes).
+
+        The first is at the edge's first node.
 
         With ``before``, a jump at ``time`` has not happened yet.
         """

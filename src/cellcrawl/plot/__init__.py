@@ -22,10 +22,12 @@ from cellcrawl.plot.stability import stability
 from cellcrawl.plot.style import styled
 from cellcrawl.plot.summary import summary
 from cellcrawl.plot.time_series import time_series
+from cellcrawl.plot.tracks import compare_tracks, tracks
 from cellcrawl.plot.two_edges import regimes, two_edges
 
 __all__ = [
     "cell",
+    "compare_tracks",
     "cycle",
     "diagram",
     "dispersion",
@@ -42,5 +44,6 @@ __all__ = [
     "styled",
     "summary",
     "time_series",
+    "tracks",
     "two_edges",
 ]

@@ -16,6 +16,7 @@ STATUSES: Final[dict[str, str]] = {
     "not_finite": "a value was no longer finite: usually a step that is too long",
     "step_too_small": "the solver could not meet its tolerance with any reasonable step",
     "unresolved": "the shape needs more nodes than allowed",
+    "inconsistent": "the shape has left the tension law, or come open: the result is wrong beyond",
     "interrupted": "stopped by the user; can be resumed",
     "running": "not ended: still going, or killed; can be resumed",
 }

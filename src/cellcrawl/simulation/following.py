@@ -11,7 +11,8 @@ from cellcrawl.curve import first_crossing
 from cellcrawl.simulation.events import crossing_at, locate_crossing
 from cellcrawl.simulation.interruption import Interruption
 from cellcrawl.simulation.progress import Progress
-from cellcrawl.simulation.recorder import Recorder
+from cellcrawl.simulation.recorder import Checkpoint, Recorder
+from cellcrawl.simulation.tension_law import KEY, TensionLaw
 from cellcrawl.solvers import Breakdown, Frame, Instant, Solver
 
 Kept = TypeVar("Kept")
@@ -25,6 +26,7 @@ class Follower(Generic[Kept]):
     """One run on its way: the only place where solver, events, recorder and progress meet."""
 
     solver: Solver
+    law: TensionLaw
     recorder: Recorder[Kept]
     identity: dict[str, Any]
     save_every: float
@@ -41,12 +43,12 @@ class Follower(Generic[Kept]):
             last = None if closing is None else self._record_at(closing)
             reached = self._last_record() if closing is None else closing
             attributes = self._attributes(ended, reached)
-            return self.recorder.finish(last, self.solver.checkpoint(), attributes)
+            return self.recorder.finish(last, self._checkpoint(), attributes)
 
     def _follow(self, t_end: float, interruption: Interruption) -> tuple[Breakdown, float | None]:
         """Return how the run ended and the time of a closing record, None if it is on the grid."""
-        now = self._last_record() if self.records else -0.5 * _CHECK_EVERY
-        valid, age = self.solver.checkpoint(), 0
+        now = max(self._last_record(), self.law.time) if self.records else -0.5 * _CHECK_EVERY
+        valid, age = self._checkpoint(), 0
         while True:
             target, on_grid = self._next_target(now, t_end)
             ended = self.solver.advance(target)
@@ -59,6 +61,9 @@ class Follower(Generic[Kept]):
             if crossed:
                 found = locate_crossing(self.solver, valid, now, target)
                 return found.breakdown, self._off_grid(found.last_valid)
+            broken = self.law.check(seen)
+            if broken is not None:
+                return broken, None
             now, age = target, age + 1
             commits = False
             if on_grid:
@@ -66,7 +71,7 @@ class Follower(Generic[Kept]):
                 self.progress.update(target, seen.tension)
                 commits = self.recorder.record(self._record_at(target, seen))
             if commits or age == _CHECKS_PER_CHECKPOINT:
-                valid, age = self.solver.checkpoint(), 0
+                valid, age = self._checkpoint(), 0
             if commits:
                 running = Breakdown("running", target, f"has reached t = {target:g}")
                 self.recorder.commit(valid, self._attributes(running, target))
@@ -95,11 +100,15 @@ class Follower(Generic[Kept]):
         """Return the next time to look at and whether it is on the grid of saved times."""
         record = self.records * self.save_every
         check = (math.floor(now / _CHECK_EVERY + _SAME_TIME) + 1) * _CHECK_EVERY
+        check = min(check, self.law.next_look(max(now, 0.0)))
         on_grid = record <= check or same_time(record, check)
         target = record if on_grid else check
         if target > t_end and not same_time(target, t_end):
             return t_end, False
         return target, on_grid
+
+    def _checkpoint(self) -> Checkpoint:
+        return {**self.solver.checkpoint(), KEY: self.law.checkpoint()}
 
     def _last_record(self) -> float:
         return (self.records - 1) * self.save_every

@@ -16,6 +16,7 @@ from cellcrawl.simulation.following import Follower, Kept, same_time
 from cellcrawl.simulation.progress import Progress, make_progress
 from cellcrawl.simulation.recorder import MemoryRecorder, Recorder, StoreRecorder
 from cellcrawl.simulation.storage import RunStore
+from cellcrawl.simulation.tension_law import KEY, TensionLaw
 from cellcrawl.solvers import Solver
 from cellcrawl.starts import RandomPerturbation, Start
 from cellcrawl.validation import real_number
@@ -116,7 +117,8 @@ def follow(
 ) -> Kept:
     """Follow a solver at its start to the end of the run; return what was recorded."""
     identity = description.identity(engine)
-    follower = Follower(engine, recorder, identity, description.save_every, progress)
+    law = TensionLaw(description.conditions, engine.invariant_tolerance)
+    follower = Follower(engine, law, recorder, identity, description.save_every, progress)
     return follower.follow(description.t_end)
 
 
@@ -171,8 +173,12 @@ def resume(path: str | Path, t_end: float, *, progress: bool = False) -> xr.Data
         Parameters.from_dict(identity["parameters"]), Schedule(identity["schedule"])
     )
     engine = solver_named(str(identity["solver"]))(None, conditions, **identity["solver_options"])
-    engine.restore(store.checkpoint())
+    checkpoint = store.checkpoint()
+    engine.restore(checkpoint)
+    law = TensionLaw(conditions, engine.invariant_tolerance)
+    if KEY in checkpoint:  # or the run is older than the law's check, which then begins here
+        law.restore(checkpoint[KEY])
     bar = make_progress(progress, reached, until)
     recorder = StoreRecorder(store, records)
     every = float(identity["save_every"])
-    return Follower(engine, recorder, identity, every, bar, records, spent).follow(until)
+    return Follower(engine, law, recorder, identity, every, bar, records, spent).follow(until)

@@ -39,16 +39,20 @@ class Units:
     Attributes
     ----------
     system : str
-        One of `SYSTEMS`.
+        One of `SYSTEMS`, or "own".
     scales : Scales or None
         What one dimensionless unit is in SI; None for a dimensionless dataset, or if unknown.
     """
 
     system: str
     scales: Scales | None = None
+    own: tuple[str, str] = ("", "")
+    """Units of length and time of outlines from a microscope, whose system is "own"."""
 
     def label(self, kind: str) -> str:
         """Return the unit of a kind of quantity ("length", "velocity", ...; see `KINDS`)."""
+        if self.system == "own":
+            return _own_label(kind, *self.own)
         return _label(kind, self.system)
 
     def one(self, kind: str) -> float:
@@ -71,6 +75,9 @@ def units_of(dataset: xr.Dataset) -> Units:
     InputError
         If a variable is in a unit that a run cannot have, or two are in different systems.
     """
+    if dataset.attrs.get("kind") == "outlines":
+        length, time = (str(dataset.attrs.get(f"{what}_units", "")) for what in ("length", "time"))
+        return Units("own", own=(length, time))
     possible, said, variables = set(SYSTEMS), "", dataset.variables
     for name, field in {"time": TIME, **FIELDS}.items():
         label = variables[name].attrs.get("units") if name in variables else None
@@ -113,6 +120,16 @@ def typical_radius(dataset: xr.Dataset) -> float:
     if math.isnan(radius):
         radius = math.sqrt(float(np.median(dataset["area"].values)) / math.pi)
     return radius
+
+
+def _own_label(kind: str, length: str, time: str) -> str:
+    powers = {"length": length, "area": f"{length}^2", "curvature": f"1/{length}"}
+    if kind in powers:
+        return powers[kind] if length else ""
+    rates = {"time": time, "rate": f"1/{time}", "angular_velocity": f"rad/{time}"}
+    if kind in rates:
+        return rates[kind] if time else ""
+    return f"{length}/{time}" if kind == "velocity" and length and time else ""
 
 
 def _label(kind: str, system: str) -> str:

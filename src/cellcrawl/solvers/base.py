@@ -29,6 +29,8 @@ class Instant:
     centroid_y: float
     surely_simple: bool = False
     """Whether it is plain that the edge does not cross itself; if not, look."""
+    closure_gap: float = 0.0
+    """Distance between the ends of the edge as the solver holds it, over its length."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -128,6 +130,15 @@ class Solver(ABC):
     @abstractmethod
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
         """Take up the state a `checkpoint` holds."""
+
+    @property
+    def invariant_tolerance(self) -> float:
+        """How far a run may be from what the model keeps before it ends as "inconsistent".
+
+        Of area against tension, relative, and of the gap in the edge over its length. A scheme that
+        keeps them says a number of its own.
+        """
+        return 0.05
 
     @abstractmethod
     def options(self) -> dict[str, Any]:

@@ -3,25 +3,33 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+import warnings
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from cellcrawl.curve import Curve, fourier, from_polygon, simple_polygon
-from cellcrawl.errors import InputError
+from cellcrawl.curve import Curve, fourier
+from cellcrawl.errors import InputError, OutlineChangedWarning
 from cellcrawl.parameters import Parameters
 from cellcrawl.starts.base import CellState
+from cellcrawl.starts.holding import held_polygon
 from cellcrawl.validation import real_array, real_number
+
+_NODES = 512  # at which an outline is tried when it is given
 
 
 @dataclass(frozen=True, eq=False)
 class FromOutline:
-    """Any simple closed polygon as the edge, with uniform or given bound fraction; immutable.
+    """Any closed polygon as the edge, with uniform or given bound fraction; immutable.
+
+    An outline from a microscope may touch or cross itself, or have retraction fibres that the model
+    cannot hold. It is then opened: what is thinner than a disk that grows until the rest can be
+    held is taken off. What was changed is in ``changes``, and a warning tells it.
 
     Parameters
     ----------
-    xy : array, shape (vertices, 2)
+    xy : array, shape (vertices, 2), or Outline
         Vertices in order, either way round, in units of the cell radius (see ``radius``).
     bound_fraction : float or array, shape (vertices,), optional
         Bound fraction at the vertices, 0 to 1; that of the resting circle unless given.
@@ -33,11 +41,21 @@ class FromOutline:
     smoothing : float
         Width of the Gaussian that rounds the corners, over the outline's length, 0.001 to 0.1.
 
+    Attributes
+    ----------
+    changes : tuple of str
+        What was done to the outline so that the model can hold it; empty if nothing was.
+
     Raises
     ------
     InputError
-        For fewer than three corners, values that are not finite, or an outline that crosses or
-        touches itself.
+        For fewer than three corners, values that are not finite, or an outline that would lose
+        more than a fifth of its area where it crosses or touches itself.
+
+    Notes
+    -----
+    An outline in image coordinates, with y downwards, stays as it is: the run is then the mirror
+    image of what is seen on the screen.
     """
 
     xy: np.ndarray
@@ -45,10 +63,10 @@ class FromOutline:
     tension: float | None = None
     radius: float | None = None
     smoothing: float = 0.01
+    changes: tuple[str, ...] = field(default=(), init=False)
 
     def __post_init__(self) -> None:
         xy = real_array("outline", self.xy, (None, 2))
-        simple_polygon(xy)
         xy.setflags(write=False)
         object.__setattr__(self, "xy", xy)
         if self.bound_fraction is not None:
@@ -62,10 +80,14 @@ class FromOutline:
             object.__setattr__(self, "tension", real_number("tension", self.tension, -1e12, 1e12))
         smoothing = real_number("smoothing", self.smoothing, 0.001, 0.1)
         object.__setattr__(self, "smoothing", smoothing)
+        changes = held_polygon(xy, _NODES, smoothing)[1]
+        object.__setattr__(self, "changes", changes)
+        for change in changes:
+            warnings.warn(f"the outline was changed: {change}", OutlineChangedWarning, stacklevel=3)
 
     def state(self, parameters: Parameters, nodes: int) -> CellState:
         """Return the first state on ``nodes`` nodes."""
-        curve = from_polygon(self.xy, nodes, self.smoothing)
+        curve = held_polygon(self.xy, nodes, self.smoothing)[0]
         bound = np.full(nodes, parameters.n_bar)
         if self.bound_fraction is not None:
             bound = self._bound_along(curve)

@@ -17,6 +17,7 @@ from cellcrawl.simulation.following import Follower
 from cellcrawl.simulation.interruption import Uninterrupted
 from cellcrawl.simulation.progress import Silent
 from cellcrawl.simulation.recorder import MemoryRecorder
+from cellcrawl.simulation.tension_law import TensionLaw
 from cellcrawl.simulation.track import Track, TrackRecorder, track_of
 from cellcrawl.sweeps.identity import code_version
 from cellcrawl.sweeps.journal import Journal, Row, read_journal
@@ -78,6 +79,7 @@ def execute(run: RunDescription, keep: str) -> Outcome:
     recorder: Any = MemoryRecorder() if keep == "fields" else TrackRecorder()
     follower: Follower[Any] = Follower(
         engine,
+        TensionLaw(run.conditions, engine.invariant_tolerance),
         recorder,
         run.identity(engine),
         run.save_every,

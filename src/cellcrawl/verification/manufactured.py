@@ -79,6 +79,10 @@ class Manufactured(Conditions):
         held = [np.full(nodes, value) for value in (p.zeta_1, p.D, p.epsilon, p.h)]
         return np.ascontiguousarray([r_on, *held, sigma_c, v_p])
 
+    @property
+    def uniform(self) -> bool:
+        return False
+
     def varies(self, start: float, end: float) -> bool:
         return True
 

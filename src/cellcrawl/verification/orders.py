@@ -13,6 +13,7 @@ from cellcrawl.bench.cases import LAWS, check_start
 from cellcrawl.parameters import Conditions, Parameters
 from cellcrawl.solvers.adaptive import AdaptiveSolver
 from cellcrawl.solvers.adaptive import state as layout
+from cellcrawl.solvers.adaptive.mesh import MESH_ROWS, hold
 from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, renew_rates
 from cellcrawl.solvers.adaptive.staggered import HALO
 from cellcrawl.verification import manufactured
@@ -60,10 +61,11 @@ def _rates(parameters: Parameters, nodes: int) -> np.ndarray:
     state = layout.from_cell(check_start(parameters).state(parameters, 2 * _FINEST), nodes)
     out, work = np.zeros_like(state), np.zeros((WORK_ROWS, nodes + 2 * HALO))
     log_rate = np.full(nodes, math.log(parameters.r_p))
-    local = conditions.edge(0.0, 2 * nodes)[:, 1::2]
-    edge = np.vstack([local, np.full(nodes, parameters.tension_rate)])
+    edge = np.vstack([conditions.edge(0.0, nodes), np.full(nodes, parameters.tension_rate)])
+    mesh = np.zeros((MESH_ROWS, nodes + 2 * HALO))
+    hold(layout.fields(state)[2], mesh, nodes)
     renew_rates(log_rate, work)
-    if not rates(state, out, log_rate, edge, work):
+    if not rates(state, out, log_rate, edge, mesh, work):
         raise RuntimeError("the check start has no off-rate somewhere")
     return out
 
@@ -172,9 +174,15 @@ def of_paper(full: bool) -> Iterator[Result]:
     yield _farthest("order in time of the paper's scheme, check start, t = 2", in_time, 1.0, 0.1)
     yield _farthest("order in space of the paper's scheme, check start, t = 2", in_space, 2.0, 0.1)
     by_time, by_space = manufactured_order_in_time(), manufactured_order_in_space()
-    for what, orders, target in (("time", by_time, 1.0), ("space", by_space, 2.0)):
-        told = f"order in {what} of the paper's scheme, manufactured solution"
-        yield _farthest(told, np.array(list(orders.values())), target, 0.15)
+    told = "order in {} of the paper's scheme, manufactured solution"
+    yield _farthest(told.format("time"), np.array(list(by_time.values())), 1.0, 0.15)
+    yield at_least(
+        told.format("space"),
+        min(by_space.values()),
+        1.85,
+        note="of positions on its circle more than two: closing the outline takes most of their "
+        "error away",
+    )
 
 
 STEPS: Final = (1e-3, 5e-4, 2.5e-4)

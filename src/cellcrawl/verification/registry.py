@@ -20,6 +20,7 @@ from cellcrawl.verification import (
     geometry,
     growth,
     invariants,
+    long_runs,
     orders,
     restart,
 )
@@ -34,6 +35,12 @@ CHECKS: Final[tuple[Check, ...]] = (
         for solver in ("adaptive", "paper", "spline")
     ),
     Check("symmetries", "invariants", invariants.of_symmetry),
+    *(
+        Check(f"law-in-{solver}", "long-runs", partial(long_runs.law_in, solver))
+        for solver in ("adaptive", "paper", "spline")
+    ),
+    Check("states", "long-runs", long_runs.states),
+    Check("periods", "long-runs", long_runs.periods),
     Check("orders-of-adaptive", "orders", orders.of_adaptive),
     Check("orders-of-paper", "orders", orders.of_paper),
     Check("orders-of-spline", "orders", orders.of_spline),
@@ -65,6 +72,7 @@ CHECKS: Final[tuple[Check, ...]] = (
 PARTS: Final[dict[str, str]] = {
     "geometry": "Geometry: ellipses, whose measures are known",
     "invariants": "Invariants: what no run may break",
+    "long-runs": "Long runs: the tension law of the shape, exact states and periods",
     "orders": "Orders of accuracy in space and time",
     "growth": "Growth rates of the nonlinear solvers against linear theory",
     "agreement": "Agreement between solvers, and with independent programs",

@@ -21,7 +21,9 @@ from cellcrawl.solvers.adaptive.differences import (
     predict,
     rescale,
 )
+from cellcrawl.solvers.adaptive.mesh import aim, edge_on_mesh, hold, lay_out, normalise, relax
 from cellcrawl.solvers.adaptive.newton import factor, solve
+from cellcrawl.solvers.adaptive.projection import project
 from cellcrawl.solvers.adaptive.rates import rates, renew_rates
 from cellcrawl.solvers.adaptive.resolution import (
     COARSEN,
@@ -42,12 +44,13 @@ _ITERATE, _CORRECTION, _RESIDUAL, _HISTORY = range(DIFFERENCES, DIFFERENCES + 4)
     STEP,
     CONTRACTION,
     FACTORED,
-    LOCAL_ERRORS,
     CONTRAST,
-    MOST_MISSED,
+    MISSED,
+    LAST_LOOK,
+    PEAK,
     FORMATION,
-) = range(9)
-CONTROLS: Final = 12
+) = range(10)
+CONTROLS: Final = 16
 # entries of `counters`
 (
     STEPS,
@@ -64,6 +67,8 @@ CONTROLS: Final = 12
 COUNTERS: Final = 12
 # what `run` returns
 REACHED, PAUSED, AT_BREAK, RETRY, CHECK_NODES, NO_ROOT, STEP_TOO_SMALL, UNRESOLVED = range(8)
+# what is due for the nodes: stay, one more or fewer, as few as the spectrum allows
+KEEP, FINER, COARSER, FEWEST = range(4)
 # what `solve_step` returns
 SOLVED, NOT_CONVERGED, ROOTLESS = range(3)
 
@@ -74,15 +79,17 @@ _WORTH_A_CHANGE = 1.15  # of the step; a change costs a new matrix
 _MOST_GROWTH = 8.0
 _LEAST_SHRINK = 0.2
 _SHRINK_ON_FAILURE = 0.4
-_NEWTON_SHARE = 0.5  # of the tolerance, for what the Newton iteration leaves
+_NEWTON_SHARE = 0.5
 _ITERATIONS = 4
 _MATRIX_LASTS = 40  # steps
-UNKNOWN_CONTRACTION: Final = 0.3
+UNKNOWN_CONTRACTION: Final = 0.1
 HOPELESS: Final = 10.0  # a full grid that misses this many times what is allowed ends the run
 _LOOK_EVERY = 4  # steps between two looks at the resolution
 _COARSEN_EVERY = 20
+_REMEMBERED = 3.0  # time over which what a grid misses is averaged
+_PEAK_SHARE = 0.1  # of what a grid misses for a moment
+_FORGET = 0.99  # of the most missed lately, at each look: a change of nodes costs 100 steps
 _LEAST_CONTRAST = 1e-7  # waves smaller than this are no longer followed to their own size
-_AMPLIFIED = 0.05  # part of a local error found in the error at t = 5 (measured)
 
 
 @woven_kernel
@@ -117,7 +124,9 @@ def solve_step(
     counters: np.ndarray,
     table: np.ndarray,
     y: np.ndarray,
+    profile: np.ndarray,
     edge: np.ndarray,
+    mesh: np.ndarray,
     matrix: np.ndarray,
     work: np.ndarray,
 ) -> int:
@@ -129,21 +138,33 @@ def solve_step(
     predict(order, table, now, history)
     for k in range(now.size):
         correction[k] = 0.0
+    span = y.size + 2 * HALO
+    g = slice(2 * span, 3 * span)
+    fill_halo(now[:span], y.size)
+    fill_halo(now[span : 2 * span], y.size)
+    hold(now[g], mesh, y.size)
+    aim(now[:span], now[span : 2 * span], now[g], mesh, y.size)
+    if not relax(c, control[STEP], order, now[g], history[g], correction[g], mesh, y.size):
+        return NOT_CONVERGED
+    hold(now[g], mesh, y.size)
+    if profile.shape[1] > 1:
+        edge_on_mesh(profile, now[g], edge, work)
     renew_rates(y, work)
     stale = counters[MATRIX_AGE] >= _MATRIX_LASTS
     last = 0.0
     for iteration in range(_ITERATIONS):
         counters[RATES] += 1
-        if not rates(now, residual, y, edge, work):
+        if not rates(now, residual, y, edge, mesh, work):
             return ROOTLESS
         if iteration == 0 and (stale or control[FACTORED] != c):
-            factor(c, now, y, edge, work, matrix)
+            factor(c, now, y, edge, mesh, work, matrix)
             control[FACTORED] = c
             counters[MATRIX_AGE] = 0
             counters[FACTORINGS] += 1
+            control[CONTRACTION] = max(control[CONTRACTION], UNKNOWN_CONTRACTION)
         for k in range(now.size):
             residual[k] = c * residual[k] - history[k] - correction[k]
-        solve(c, now, matrix, residual)
+        solve(c, now, mesh, matrix, residual)
         for k in range(now.size):
             correction[k] += residual[k]
             now[k] += residual[k]
@@ -167,6 +188,7 @@ def bend_history(
     table: np.ndarray,
     y: np.ndarray,
     edge: np.ndarray,
+    mesh: np.ndarray,
     matrix: np.ndarray,
     work: np.ndarray,
 ) -> None:
@@ -177,15 +199,19 @@ def bend_history(
     """
     order, h = counters[ORDER], control[STEP]
     state, residual = table[0], table[_RESIDUAL]
+    nodes = y.size
+    span = nodes + 2 * HALO
+    fields = state[:span], state[span : 2 * span], state[2 * span : 3 * span]
+    lay_out(*fields, h, order, mesh, nodes)
     renew_rates(y, work)
-    if not rates(state, residual, y, edge, work):
+    if not rates(state, residual, y, edge, mesh, work):
         return
     residual *= h
     for j in range(1, order + 1):
         residual -= table[j] / j
     c = h / LEADING[order]
-    factor(c, state, y, edge, work, matrix)
-    solve(c, state, matrix, residual)
+    factor(c, state, y, edge, mesh, work, matrix)
+    solve(c, state, mesh, matrix, residual)
     table[1] += residual
 
 
@@ -233,8 +259,10 @@ def run(
     counters: np.ndarray,
     table: np.ndarray,
     y: np.ndarray,
+    profile: np.ndarray,
     edge: np.ndarray,
     ramping: bool,
+    mesh: np.ndarray,
     matrix: np.ndarray,
     work: np.ndarray,
 ) -> int:
@@ -249,7 +277,7 @@ def run(
     while control[TIME] < target:
         if tried == most_steps:
             return PAUSED
-        if counters[CHECK_DUE] == 1:
+        if counters[CHECK_DUE] != KEEP:
             return CHECK_NODES
         tried += 1
         h = bounded_step(control[STEP], control[TIME], end)
@@ -257,13 +285,18 @@ def run(
         if h != control[STEP]:
             change_step(counters[ORDER], h, control, counters, table)
         order = counters[ORDER]
-        contrast = min(max(control[CONTRAST], _LEAST_CONTRAST), 1.0) * control[FORMATION]
-        ended = solve_step(tolerance, contrast, control, counters, table, y, edge, matrix, work)
+        contrast = min(max(control[CONTRAST], _LEAST_CONTRAST), 1.0)
+        ended = solve_step(
+            tolerance, contrast, control, counters, table, y, profile, edge, mesh, matrix, work
+        )
         correction = table[_CORRECTION]
         error = np.inf
         if ended == SOLVED:
             size = relative_size(correction, table[_ITERATE], nodes, contrast)
             error = ERRORS[order] * size / tolerance
+        if ended == NOT_CONVERGED and counters[MATRIX_AGE] > 0:
+            control[FACTORED] = 0.0  # the step may be right and the matrix old
+            continue
         if not error <= 1.0:
             counters[REJECTED] += 1
             counters[FAILED_IN_A_ROW] += 1
@@ -290,7 +323,6 @@ def run(
                 return RETRY
             continue
         move_on(order, table, correction)
-        control[LOCAL_ERRORS] += error * tolerance * _AMPLIFIED
         control[PREVIOUS_TIME] = control[TIME]
         control[TIME] = end if lands else control[TIME] + h
         counters[STEPS] += 1
@@ -300,18 +332,28 @@ def run(
         choose_step(error, tolerance, contrast, nodes, control, counters, table)
         if counters[STEPS] % _LOOK_EVERY == 0:
             span = nodes + 2 * HALO
-            fill_halo(table[0, :span], nodes)
+            normalise(table[0, 2 * span : 3 * span], nodes)
+            project(table[0], nodes, work)
             fill_halo(table[0, span : 2 * span], nodes)
             misses, control[CONTRAST] = missed(table[0], nodes, work)
             control[FORMATION] = formation(table[0, span : 2 * span], nodes)
-            control[MOST_MISSED] = max(control[MOST_MISSED], misses)
-            most = allowance(allowed, control[CONTRAST])
+            formed = control[FORMATION] >= 1.0
+            # later errors add up; while the cell forms each is magnified, and counts at once
+            part = min((control[TIME] - control[LAST_LOOK]) / _REMEMBERED, 1.0) if formed else 1.0
+            control[LAST_LOOK] = control[TIME]
+            control[MISSED] += part * (misses - control[MISSED])
+            misses = max(control[MISSED], _PEAK_SHARE * misses)
+            control[PEAK] = max(control[PEAK] * _FORGET, misses) if formed else misses
+            most = allowance(allowed, control[CONTRAST], formed)
             if misses > most and nodes < nodes_range[1]:
-                counters[CHECK_DUE] = 1
-            elif misses > HOPELESS * allowed:
+                counters[CHECK_DUE] = FINER
+            elif misses > HOPELESS * most:
                 return UNRESOLVED
             elif counters[STEPS] % _COARSEN_EVERY == 0 and nodes > nodes_range[0]:
-                counters[CHECK_DUE] = 1 if COARSER_MISSES * misses < COARSEN * most else 0
+                if not formed and COARSER_MISSES * misses < COARSEN * most:
+                    counters[CHECK_DUE] = FEWEST
+                elif COARSER_MISSES * control[PEAK] < COARSEN * most:
+                    counters[CHECK_DUE] = COARSER
         if lands:
             return AT_BREAK
         if ramping:

@@ -15,6 +15,7 @@ import numpy as np
 
 from cellcrawl._compile import kernel
 from cellcrawl.physics.laws import friction_slope
+from cellcrawl.solvers.adaptive.mesh import FINE, FINE_NODE
 from cellcrawl.solvers.adaptive.rates import (
     AREA,
     LENGTH,
@@ -27,9 +28,10 @@ from cellcrawl.solvers.adaptive.rates import (
 from cellcrawl.solvers.adaptive.staggered import HALO, difference_ahead, dot, fill_halo
 from cellcrawl.solvers.cyclic import FACTOR_ROWS, factor_cyclic_tridiagonal, solve_factored
 
-# rows of a matrix: how U answers to n and to sigma, how n answers to sigma within a step, kappa
-BY_LINKERS, BY_TENSION, ANSWER, KAPPA, SCALARS = range(5)
-_LINKERS: Final = 5  # first row of the factors for n
+# rows of a matrix: how U answers to n and to sigma, how n answers to sigma within a step, g kappa,
+# a few numbers, g times the first
+BY_LINKERS, BY_TENSION, ANSWER, BEND, SCALARS, ASKED, LOOSENED = range(7)
+_LINKERS: Final = 7  # first row of the factors for n
 _SHAPE: Final = _LINKERS + FACTOR_ROWS  # and for the angle
 _SCRATCH: Final = _SHAPE + FACTOR_ROWS
 MATRIX_ROWS: Final = _SCRATCH + 3
@@ -37,6 +39,7 @@ MATRIX_ROWS: Final = _SCRATCH + 3
 _COMPACT: Final = 0.125
 _COMPACT_SCALE: Final = 1.0 + 2.0 * _COMPACT
 _SHAPE_SCALE: Final = 1.4  # of the plain one: 1.7 would fit the shortest waves, 1.0 the long ones
+_MIDDLING: Final = 4.0  # of the plain second difference, for waves of middle length
 _LEAST_PIVOT: Final = (
     0.3  # where a reaction or the tension grows on its own; only the speed suffers
 )
@@ -60,34 +63,41 @@ def factor(
     state: np.ndarray,
     y: np.ndarray,
     edge: np.ndarray,
+    mesh: np.ndarray,
     work: np.ndarray,
     matrix: np.ndarray,
 ) -> None:
     """Make the matrix for a step with factor ``c``. ``y`` and ``work`` are as `rates` left them."""
     nodes = y.size
     span = nodes + 2 * HALO
-    w, n, scalars = state[:span], state[span : 2 * span], state[2 * span :]
+    w, n, g = state[:span], state[span : 2 * span], state[2 * span : 3 * span]
+    scalars = state[3 * span :]
+    fine, fine_node = mesh[FINE], mesh[FINE_NODE]
     per_spacing = nodes / scalars[LENGTH]
     winding = 2.0 * math.pi / scalars[LENGTH]
     sigma = scalars[TENSION]
-    by_linkers, by_tension, kappa = matrix[BY_LINKERS], matrix[BY_TENSION], matrix[KAPPA]
+    by_linkers, by_tension, bend = matrix[BY_LINKERS], matrix[BY_TENSION], matrix[BEND]
     lower, diagonal, upper = matrix[_SCRATCH], matrix[_SCRATCH + 1], matrix[_SCRATCH + 2]
-    answer = matrix[ANSWER]
+    answer, loosened = matrix[ANSWER], matrix[LOOSENED]
+    spreading = _MIDDLING * c * per_spacing**2
     r_on, zeta_1, epsilon, h, rate = edge[0], edge[1], edge[3], edge[4], work[RATE]
     pulled, loss, slide = work[0], work[1], work[3]
     for i in range(np.uint64(nodes)):
         j = i + _HALO
         r, log_r = rate[i], y[i]
-        kappa[i] = winding + per_spacing * difference_ahead(w, j)
-        pull = 1.0 + kappa[i] * h[i]
+        bend[i] = winding + per_spacing * difference_ahead(w, j)
+        pull = 1.0 + bend[i] * fine[j] * h[i]
         yielding = 1.0 / friction_slope(log_r, r, n[j], zeta_1[i])
         share = epsilon[i] * r * (1.0 + log_r) * yielding
         slip = n[j] * r * yielding
         by_linkers[i] = share * zeta_1[i] * log_r
         by_tension[i] = -share * pull
-        loss[j] = max(1.0 + c * (r_on[i] + r - slip * zeta_1[i] * log_r), _LEAST_PIVOT)
-        lower[i] = -c * slip * pull
-        pulled[j] = max(share * sigma * h[i], 0.0)
+        kept = max(1.0 + c * (r_on[i] + r - slip * zeta_1[i] * log_r), _LEAST_PIVOT)
+        loss[j] = g[j] * kept
+        lower[i] = -c * slip * pull * g[j]
+        tense = max(sigma, 0.0) * h[i] * fine[j]
+        loosened[i] = c * slip * tense / (kept + spreading * edge[2, i] * fine[j] * fine[j])
+        pulled[j] = share * tense + by_linkers[i] * loosened[i]
     _blend(lower, answer)
     fill_halo(loss, nodes)
     fill_halo(pulled, nodes)
@@ -96,68 +106,84 @@ def factor(
     carried = 0.25 * c * per_spacing
     for i in range(np.uint64(nodes)):
         j = i + _HALO
-        d = spread * diffusivity[i]
+        behind = spread * diffusivity[i] * fine_node[j]
+        ahead = spread * diffusivity[i] * fine_node[j + _1]
         drift = carried * (slide[j] + slide[j + _1])
-        lower[i] = _COMPACT * loss[j - _1] - d + drift
-        upper[i] = _COMPACT * loss[j + _1] - d - drift
-        diagonal[i] = loss[j] + 2.0 * d
+        lower[i] = _COMPACT * loss[j - _1] - behind + drift
+        upper[i] = _COMPACT * loss[j + _1] - ahead - drift
+        diagonal[i] = loss[j] + behind + ahead
     factor_cyclic_tridiagonal(lower, diagonal, upper, matrix[_LINKERS : _LINKERS + FACTOR_ROWS])
-    bend = c * per_spacing**2 * _SHAPE_SCALE
+    straighten = c * per_spacing**2 * _SHAPE_SCALE
     for i in range(np.uint64(nodes)):
         j = i + _HALO
-        behind, ahead = bend * pulled[j - _1], bend * pulled[j]
-        drift = 2.0 * carried * slide[j]
+        behind = straighten * fine_node[j] * pulled[j - _1]
+        ahead = straighten * fine_node[j] * pulled[j]
+        drift = 2.0 * carried * slide[j] * fine_node[j]
         lower[i], diagonal[i], upper[i] = drift - behind, 1.0 + behind + ahead, -drift - ahead
     factor_cyclic_tridiagonal(lower, diagonal, upper, matrix[_SHAPE : _SHAPE + FACTOR_ROWS])
     solve_factored(matrix[_LINKERS : _LINKERS + FACTOR_ROWS], answer)
-    pull_back = 0.0
-    for i in range(nodes):
-        pull_back += by_tension[i]
-    slope = pull_back + dot(by_linkers, answer)
+    inner = g[HALO : HALO + nodes]
+    asked = matrix[ASKED]
+    for i in range(np.uint64(nodes)):
+        asked[i] = by_linkers[i] * inner[i]
+    pull_back = dot(by_tension, inner)
+    slope = pull_back + dot(asked, answer)
     gain = c * edge[TENSION_RATE, 0] / per_spacing
     matrix[SCALARS, 0] = gain
+    matrix[SCALARS, 2] = edge[TENSION_RATE, 0]
     matrix[SCALARS, 1] = 1.0 / max(1.0 - gain * slope, _LEAST_PIVOT)
-    matrix[SCALARS, 2] = pull_back
 
 
 @kernel
 def solve(
     c: float,
     state: np.ndarray,
+    mesh: np.ndarray,
     matrix: np.ndarray,
     residual: np.ndarray,
 ) -> None:
     """Replace ``residual``, laid out like ``state``, by the change of state it asks for.
 
-    Its halos become 0.
+    Its halos become 0, and the density's part: that one is solved for before.
     """
     nodes = matrix.shape[1]
     span = nodes + 2 * HALO
-    per_spacing = nodes / state[2 * span + LENGTH]
-    w, n, scalars = residual[:span], residual[span : 2 * span], residual[2 * span :]
-    by_linkers, by_tension, kappa = matrix[BY_LINKERS], matrix[BY_TENSION], matrix[KAPPA]
+    per_spacing = nodes / state[3 * span + LENGTH]
+    g, fine_node = state[2 * span : 3 * span], mesh[FINE_NODE]
+    w, n, scalars = residual[:span], residual[span : 2 * span], residual[3 * span :]
+    by_linkers, by_tension, bend = matrix[BY_LINKERS], matrix[BY_TENSION], matrix[BEND]
     answer, gain = matrix[ANSWER], matrix[SCALARS, 0]
     bound, speed, angle = matrix[_SCRATCH], matrix[_SCRATCH + 1], matrix[_SCRATCH + 2]
-    _blend(n[HALO : HALO + nodes], bound)
+    for i in range(np.uint64(nodes)):
+        angle[i] = n[i + _HALO] * g[i + _HALO]
+    _blend(angle, bound)
     solve_factored(matrix[_LINKERS : _LINKERS + FACTOR_ROWS], bound)
-    asked = gain * dot(by_linkers, bound)
+    asked = gain * dot(matrix[ASKED], bound)
     sigma = (scalars[TENSION] + asked) * matrix[SCALARS, 1]
     for i in range(np.uint64(nodes)):
         bound[i] += sigma * answer[i]
         n[i + _HALO] = bound[i]
         speed[i] = by_linkers[i] * bound[i] + by_tension[i] * sigma
-    angle[0] = w[HALO] - c * per_spacing * (speed[0] - speed[nodes - 1])
+    growth = c * dot(speed, g[HALO : HALO + nodes]) / per_spacing
+    move = c * per_spacing
+    angle[0] = w[HALO] - move * fine_node[HALO] * (speed[0] - speed[nodes - 1])
     for i in range(_1, np.uint64(nodes)):
-        angle[i] = w[i + _HALO] - c * per_spacing * (speed[i] - speed[i - _1])
+        j = i + _HALO
+        angle[i] = w[j] - move * fine_node[j] * (speed[i] - speed[i - _1])
     solve_factored(matrix[_SHAPE : _SHAPE + FACTOR_ROWS], angle)
+    loosened = matrix[LOOSENED]
+    for i in range(np.uint64(nodes - 1)):
+        n[i + _HALO] -= per_spacing * loosened[i] * (angle[i + _1] - angle[i])
+    n[HALO + nodes - 1] -= per_spacing * loosened[nodes - 1] * (angle[0] - angle[nodes - 1])
     for i in range(np.uint64(nodes)):
         w[i + _HALO] = angle[i]
     for k in range(HALO):
         w[k] = n[k] = w[HALO + nodes + k] = n[HALO + nodes + k] = 0.0
-    growth = dot(by_linkers, bound) + sigma * matrix[SCALARS, 2]
+    for k in range(2 * span, 3 * span):
+        residual[k] = 0.0
     first = 0.5 * c * (speed[0] + speed[nodes - 1])
-    scalars[TENSION] += gain * growth  # sigma, written so that sigma - G A stays to rounding
-    scalars[AREA] += c * growth / per_spacing
-    scalars[LENGTH] += c * dot(speed, kappa) / per_spacing
+    scalars[AREA] += growth
+    scalars[TENSION] += matrix[SCALARS, 2] * growth  # so that sigma - G A stays to rounding
+    scalars[LENGTH] += c * dot(speed, bend) / per_spacing
     scalars[ORIGIN_X] += first * math.sin(state[HALO])
     scalars[ORIGIN_Y] -= first * math.cos(state[HALO])

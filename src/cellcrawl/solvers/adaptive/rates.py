@@ -1,8 +1,9 @@
 """Rates of change of the whole state on the staggered grid, and how stiff they are.
 
-A state is one flat array: ``w = theta - winding`` at the nodes and ``n`` at the midpoints, both
-with halos, then the scalars length, tension, area and position of node 0. Kernels use the paper's
-letters: ``U`` edge velocity, ``T`` tangential velocity of the nodes, ``y = log r``.
+A state is one flat array: ``w = theta - winding`` at the nodes, ``n`` and the density ``g`` of the
+arclength at the midpoints, all with halos, then the scalars length, tension, area and position of
+node 0. Between nodes lies an arclength of ``L g / nodes``. Kernels use the paper's letters: ``U``
+edge velocity, ``T`` tangential velocity of the nodes, ``y = log r``.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from cellcrawl.physics.laws import (
     driving_force,
     edge_velocity,
 )
+from cellcrawl.solvers.adaptive.mesh import CHANGE, FINE, FINE_NODE
 from cellcrawl.solvers.adaptive.staggered import (
     HALO,
     cell_mean,
@@ -30,14 +32,14 @@ from cellcrawl.solvers.adaptive.staggered import (
     mean_ahead,
     mean_behind,
     running_sum,
-    second_difference,
     total,
 )
 
 LENGTH, TENSION, AREA, ORIGIN_X, ORIGIN_Y = range(5)  # scalars, after the two fields
 SCALARS: Final = 8  # room kept for them
+FIELDS: Final = 3
 TENSION_RATE: Final = 7  # row of `edge` after the local parameters
-WORK_ROWS: Final = 5
+WORK_ROWS: Final = 6
 RATE: Final = 4  # row of `work` that keeps r beside the last y, from stage to stage
 _HALO = np.uint64(HALO)
 _NEAR = 0.12  # a first step in log r this short is followed by a second that reaches rounding
@@ -65,14 +67,15 @@ def velocities(
     length: float,
     sigma: float,
     edge: np.ndarray,
+    fine: np.ndarray,
     y: np.ndarray,
     work: np.ndarray,
 ) -> bool:
     """Solve the force balance at the midpoints; False where it has no root.
 
     Leaves ``log r`` in ``y``, shape (nodes,), and in the rows of ``work``, which have halos: ``U``,
-    ``kappa U`` and ``r_on (1 - n) - r n``. Row `RATE` must hold ``exp(y)``, where `renew_rates`
-    puts it.
+    ``g kappa U`` and ``r_on (1 - n) - r n``. Row `RATE` must hold ``exp(y)``, where `renew_rates`
+    puts it. ``fine`` is ``1 / g``.
     """
     nodes = y.size
     per_spacing = nodes / length
@@ -83,7 +86,9 @@ def velocities(
     unsettled = 0
     for i in range(np.uint64(nodes)):
         j = i + _HALO
-        kappa[i] = winding + per_spacing * difference_ahead(w, j)
+        bend = winding + per_spacing * difference_ahead(w, j)
+        stretch[j] = bend
+        kappa[i] = bend * fine[j]
         force = driving_force(sigma, kappa[i], sigma_c[i], h[i])
         near = y[i]
         r = rate[i]
@@ -106,9 +111,8 @@ def velocities(
         j = i + _HALO
         speed[j] = edge_velocity(y[i], rate[i], v_p[i], epsilon[i])
         binding[j] = binding_rate(n[j], rate[i], r_on[i])
-        stretch[j] = kappa[i] * speed[j]
+        stretch[j] *= speed[j]
     fill_halo(speed, nodes)
-    fill_halo(stretch, nodes)
     return True
 
 
@@ -118,41 +122,56 @@ def rates(
     out: np.ndarray,
     y: np.ndarray,
     edge: np.ndarray,
+    mesh: np.ndarray,
     work: np.ndarray,
 ) -> bool:
     """Write the rates of change of ``state`` to ``out``; False where there is no off-rate.
 
     Fills the halos of ``state``. ``y`` is the last ``log r`` and becomes the new one. ``edge``
-    holds the parameters at the midpoints and in its last row G, shape (8, nodes).
+    holds the parameters at the midpoints and in its last row G, shape (8, nodes); ``mesh`` what
+    `mesh.hold` makes of the density, and its rate, which is copied.
     """
     nodes = y.size
     span = nodes + 2 * HALO
-    w, n, scalars = state[:span], state[span : 2 * span], state[2 * span :]
-    w_t, n_t, scalars_t = out[:span], out[span : 2 * span], out[2 * span :]
+    w, n, g = state[:span], state[span : 2 * span], state[2 * span : 3 * span]
+    w_t, n_t, g_t = out[:span], out[span : 2 * span], out[2 * span : 3 * span]
+    scalars, scalars_t = state[3 * span :], out[3 * span :]
+    fine, fine_node, change = mesh[FINE], mesh[FINE_NODE], mesh[CHANGE]
     length = scalars[LENGTH]
     fill_halo(w, nodes)
     fill_halo(n, nodes)
-    if not (length > 0.0 and velocities(w, n, length, scalars[TENSION], edge, y, work)):
+    if not (length > 0.0 and velocities(w, n, length, scalars[TENSION], edge, fine, y, work)):
         return False
     spacing = length / nodes
     per_spacing = nodes / length
-    winding = 2.0 * math.pi / length
-    speed, stretch, binding, slide = work[0], work[1], work[2], work[3]
+    turn = 2.0 * math.pi / nodes
+    speed, stretch, binding, slide, flux = work[0], work[1], work[2], work[3], work[5]
     mean_stretch = total(stretch, nodes) / nodes
     for i in range(np.uint64(nodes)):
         j = i + _HALO
-        slide[j] = spacing * (mean_stretch - cell_mean(stretch, j))
+        slide[j] = speed[j] * g[j]
+        stretch[j] = spacing * (mean_stretch * g[j] + change[j] - stretch[j])
+        g_t[j] = change[j]
+    area_t = spacing * total(slide, nodes)
+    fill_halo(stretch, nodes)
+    for i in range(np.uint64(nodes)):
+        slide[i + _HALO] = cell_mean(stretch, i + _HALO)
     running_sum(slide, nodes)
+    for i in range(np.uint64(nodes)):
+        j = i + _HALO
+        scale = per_spacing * fine_node[j]
+        bend = turn + central_difference(w, j)
+        w_t[j] = scale * (slide[j] * bend - difference_behind(speed, j))
+        flux[j] = scale * difference_behind(n, j)
+        stretch[j] = slide[j] * flux[j]
     fill_halo(slide, nodes)
+    fill_halo(flux, nodes)
+    fill_halo(stretch, nodes)
     diffusivity = edge[2]
     for i in range(np.uint64(nodes)):
         j = i + _HALO
-        bend = winding + per_spacing * central_difference(w, j)
-        w_t[j] = slide[j] * bend - per_spacing * difference_behind(speed, j)
-        spread = diffusivity[i] * (per_spacing * per_spacing) * second_difference(n, j)
-        drift = mean_ahead(slide, j) * per_spacing * central_difference(n, j)
-        n_t[j] = binding[j] + spread + drift
-    area_t = spacing * total(speed, nodes)
+        spread = diffusivity[i] * (per_spacing * fine[j]) * difference_ahead(flux, j)
+        n_t[j] = binding[j] + spread + mean_ahead(stretch, j)
     first_speed = mean_behind(speed, _HALO)
     scalars_t[LENGTH] = length * mean_stretch
     scalars_t[TENSION] = edge[TENSION_RATE, 0] * area_t

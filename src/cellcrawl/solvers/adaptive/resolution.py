@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 
 from cellcrawl._compile import kernel
+from cellcrawl.solvers.adaptive.rates import FIELDS
 from cellcrawl.solvers.adaptive.staggered import (
     HALO,
     difference_ahead,
@@ -30,14 +31,14 @@ NODE_COUNTS: Final[tuple[int, ...]] = (
     4096,
 )
 COARSEN: Final = 0.6  # go to a coarser grid only if it misses this part of what is allowed
-COARSER_MISSES: Final = 7.0  # about how much more the next coarser grid misses
+COARSER_MISSES: Final = 4.0  # about how much more the next coarser grid misses at its worst
 LEAST_ALLOWANCE: Final = 0.25
 MOST_ALLOWANCE: Final = 2.0
+_FORMING = 8.0  # (measured)
 _REFINE = 1.1  # least factor of a refinement
 _SCALE = 2.2
 _DOUBLE_DIFFERENCES = 5
 _FORMED = 0.1  # spread of the bound fraction along the edge of a formed cell
-_AMPLIFIED = 5.0  # care with the steps before (measured)
 _FLAT = 1e-6  # slopes below this are as good as none
 _ROUNDING = 3e-13  # waves smaller than this are what rounding leaves of none
 _HALO = np.uint64(HALO)
@@ -52,7 +53,7 @@ def missed(state: np.ndarray, nodes: int, work: np.ndarray) -> tuple[float, floa
     """
     span = nodes + 2 * HALO
     square = slopes = 0.0
-    for field in range(2):
+    for field in range(FIELDS):
         values = state[field * span : (field + 1) * span]
         now, then = work[0], work[1]
         for i in range(np.uint64(nodes)):
@@ -73,34 +74,38 @@ def missed(state: np.ndarray, nodes: int, work: np.ndarray) -> tuple[float, floa
 
 @kernel
 def formation(n: np.ndarray, nodes: int) -> float:
-    """How far the cell has formed, up to 1, and far less before: then errors grow with its waves.
+    """How far the cell has formed, up to 1: the spread of its bound fraction along the edge.
 
-    An instability that takes the bound fraction from a spread of 1e-4 to one of 0.1 multiplies the
-    errors made on the way as much, so the first steps must be the most accurate ones.
+    Until then what a grid misses is soon smoothed away or grown over; then it adds up.
     """
     mean = total(n, nodes) / nodes
     square = 0.0
     for i in range(HALO, HALO + nodes):
         square += (n[i] - mean) ** 2
-    spread = min(math.sqrt(square / nodes) / _FORMED, 1.0)
-    return 1.0 / (1.0 + _AMPLIFIED * (1.0 - spread))
+    return min(math.sqrt(square / nodes) / _FORMED, 1.0)
 
 
 @kernel
-def allowance(allowed: float, contrast: float) -> float:
-    """What may be missed now: less while the waves are small, for their errors grow with them."""
-    return allowed * min(max(contrast, LEAST_ALLOWANCE), MOST_ALLOWANCE)
+def allowance(allowed: float, contrast: float, formed: bool) -> float:
+    """What may be missed now.
 
-
-def spectrum(angle: np.ndarray, bound: np.ndarray) -> np.ndarray:
-    """Size of every wave in the slopes of angle and bound fraction, shape (nodes // 2 + 1,).
-
-    ``angle`` is the tangent angle less its winding. The squares sum to the mean square.
+    Less while the waves are small, for their errors grow with them; more until the cell has formed,
+    for only what is missed for long adds up.
     """
-    k = np.arange(angle.size // 2 + 1)
-    waves = np.abs(np.fft.rfft(np.stack([angle, bound]), axis=1)) / angle.size
+    share = min(max(contrast, LEAST_ALLOWANCE), MOST_ALLOWANCE)
+    return allowed * share * (1.0 if formed else _FORMING)
+
+
+def spectrum(*fields: np.ndarray) -> np.ndarray:
+    """Size of every wave in the slopes of fields on the nodes, shape (nodes // 2 + 1,).
+
+    The fields are the tangent angle less its winding, the bound fraction and the density of the
+    nodes. The squares sum to the mean square.
+    """
+    k = np.arange(fields[0].size // 2 + 1)
+    waves = np.abs(np.fft.rfft(np.stack(fields), axis=1)) / fields[0].size
     waves[waves < _ROUNDING] = 0.0
-    return np.asarray(k * np.hypot(waves[0], waves[1]) * math.sqrt(2.0))
+    return np.asarray(k * np.sqrt(np.sum(waves**2, axis=0)) * math.sqrt(2.0))
 
 
 def missed_on(waves: np.ndarray, nodes: int) -> float:
@@ -123,9 +128,11 @@ def fewest_nodes(waves: np.ndarray, allowed: float, low: int, high: int) -> int:
     return high + 1
 
 
-def wanted_nodes(waves: np.ndarray, nodes: int, allowed: float, low: int, high: int) -> int:
-    """Return the node count to go on with from ``nodes``; ``high + 1`` if it is above ``high``."""
-    if missed_on(waves, nodes) > allowed:
-        finer = [count for count in NODE_COUNTS if _REFINE * nodes <= count <= high]
-        return finer[0] if finer else high + 1
-    return min(nodes, fewest_nodes(waves, COARSEN * allowed, low, high))
+def finer(nodes: int, high: int) -> int:
+    """Return the next larger node count up to ``high``; ``nodes`` if there is none."""
+    return next((count for count in NODE_COUNTS if _REFINE * nodes <= count <= high), nodes)
+
+
+def coarser(nodes: int, low: int) -> int:
+    """Return the next smaller node count from ``low`` on; ``nodes`` if there is none."""
+    return next((n for n in reversed(NODE_COUNTS) if low <= n and _REFINE * n <= nodes), nodes)

@@ -13,7 +13,9 @@ from cellcrawl.solvers.adaptive import drive, resolution
 from cellcrawl.solvers.adaptive import state as layout
 from cellcrawl.solvers.adaptive.differences import DIFFERENCES
 from cellcrawl.solvers.adaptive.frame import Shape, frame, instant, shape_between
+from cellcrawl.solvers.adaptive.mesh import MESH_ROWS, edge_on_mesh, hold, lay_out
 from cellcrawl.solvers.adaptive.newton import MATRIX_ROWS
+from cellcrawl.solvers.adaptive.projection import project
 from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, renew_rates
 from cellcrawl.solvers.adaptive.staggered import HALO
 from cellcrawl.solvers.adaptive.step_error import relative_size
@@ -24,9 +26,10 @@ from cellcrawl.validation import real_number, whole_number
 _STEPS_PER_CALL = 5000  # between two looks at Ctrl-C
 _START_NODES = 1024
 _USUAL_RTOL = 1e-4
-_TIGHT_RTOL = 1e-6  # below it a start is sampled more finely
+_TIGHT_RTOL = 1e-5  # below it a start is sampled more finely
 _FIRST_STEP = 0.2  # times the root of the tolerance, relative to the rate of change
-_SPATIAL_SHARE = 0.005  # of what the grid misses, in the error at t = 5
+_SHORT = 1e-3  # a step at which the density of the nodes relaxes at its full rate
+_PLACES = 1024  # at which parameters that vary along the edge are read
 
 
 class AdaptiveSolver(Solver):
@@ -63,7 +66,7 @@ class AdaptiveSolver(Solver):
         self._min_nodes = whole_number("min_nodes", min_nodes, counts[0], self._max_nodes)
         self._control = np.zeros(drive.CONTROLS)
         self._counters = np.zeros(drive.COUNTERS, np.int64)
-        self._tally = np.zeros(4)  # fewest nodes, most nodes, regrids, largest closure error
+        self._tally = np.zeros(5)  # fewest nodes, most nodes, regrids, largest errors mended
         self._control[drive.TIME] = self._control[drive.PREVIOUS_TIME] = time
         self._measured: tuple[float, Shape] | None = None
         self._counters[drive.RESTARTING] = 1
@@ -105,6 +108,7 @@ class AdaptiveSolver(Solver):
                 self._table,
                 self._log_rate,
                 *self._edge(now, end),
+                self._mesh,
                 self._matrix,
                 self._work,
             )
@@ -133,6 +137,7 @@ class AdaptiveSolver(Solver):
         steps = (time - last) / self._control[drive.STEP]
         shape = shape_between(steps, int(self._counters[drive.ORDER]), self._table)
         self._tally[3] = max(self._tally[3], shape.closure_error)
+        self._tally[4] = max(self._tally[4], shape.area_error)
         self._measured = (time, shape)
         return shape
 
@@ -154,6 +159,11 @@ class AdaptiveSolver(Solver):
         self._log_rate = np.array(checkpoint["log_rate"], dtype=float)
         self._matrix = np.array(checkpoint["matrix"], dtype=float)
 
+    @property
+    def invariant_tolerance(self) -> float:
+        """What is mended of closure and area in a few steps is far below the tolerance."""
+        return self._rtol
+
     def options(self) -> dict[str, Any]:
         return {
             "nodes": self._nodes,
@@ -163,7 +173,7 @@ class AdaptiveSolver(Solver):
         }
 
     def diagnostics(self) -> dict[str, float]:
-        fewest, most, regrids, closure = (float(value) for value in self._tally)
+        fewest, most, regrids, closure, area = (float(value) for value in self._tally)
         return {
             "steps": int(self._counters[drive.STEPS]),
             "rejected_steps": int(self._counters[drive.REJECTED]),
@@ -173,16 +183,13 @@ class AdaptiveSolver(Solver):
             "most_nodes": int(most),
             "regrids": int(regrids),
             "largest_closure_error": closure,
-            "error_estimate": float(
-                self._control[drive.LOCAL_ERRORS]
-                + _SPATIAL_SHARE * self._control[drive.MOST_MISSED]
-            ),
+            "largest_area_error": area,
         }
 
     def _begin(self, start: CellState) -> None:
         curve = start.curve
         waves = resolution.spectrum(curve.theta - layout.winding(curve.nodes), start.bound_fraction)
-        allowed = resolution.LEAST_ALLOWANCE * _grid_tolerance(self._rtol)
+        allowed = resolution.allowance(_grid_tolerance(self._rtol), 0.0, formed=False)
         if resolution.missed_on(waves, curve.nodes) > 3.0 * allowed:
             raise InputError(
                 f"the start is not resolved on {curve.nodes} nodes at rtol = {self._rtol:g}: "
@@ -197,6 +204,7 @@ class AdaptiveSolver(Solver):
         differences = np.zeros((DIFFERENCES, layout.size(nodes)))
         differences[0] = layout.from_cell(start, nodes)
         self._hold(differences)
+        project(self._table[0], nodes, self._work)
         self._log_rate = np.full(nodes, math.log(self._conditions.at(self.time).r_p))
         if not self._restart():
             raise InputError(
@@ -211,9 +219,10 @@ class AdaptiveSolver(Solver):
         self._table = np.zeros((drive.TABLE_ROWS, layout.size(nodes)))
         self._table[:DIFFERENCES] = differences
         self._work = np.zeros((WORK_ROWS, nodes + 2 * HALO))
+        self._mesh = np.zeros((MESH_ROWS, nodes + 2 * HALO))
         self._matrix = np.zeros((MATRIX_ROWS, nodes))
         self._control[drive.FACTORED] = 0.0
-        self._edges: tuple[float, np.ndarray] | None = None
+        self._edges: tuple[float, np.ndarray, np.ndarray] | None = None
         self._tally[0] = min(self._tally[0] or nodes, nodes)
         self._tally[1] = max(self._tally[1], nodes)
 
@@ -221,13 +230,15 @@ class AdaptiveSolver(Solver):
         """Take the rates under the parameters that hold now, and begin with a short step."""
         table, control, counters = self._table, self._control, self._counters
         nodes = layout.nodes_of(table)
+        edge = self._midpoints(self.time)
+        lay_out(*layout.fields(table[0]), _SHORT, 1, self._mesh, nodes)
         renew_rates(self._log_rate, self._work)
         table[1:] = 0.0
         counters[drive.RATES] += 1
-        if not rates(table[0], table[1], self._log_rate, self._midpoints(self.time), self._work):
+        if not rates(table[0], table[1], self._log_rate, edge, self._mesh, self._work):
             return False
         _, control[drive.CONTRAST] = resolution.missed(table[0], nodes, self._work)
-        control[drive.FORMATION] = resolution.formation(layout.bound_with_halo(table[0]), nodes)
+        control[drive.FORMATION] = resolution.formation(layout.fields(table[0])[1], nodes)
         pace = relative_size(table[1], table[0], nodes, 1.0)
         control[drive.STEP] = _FIRST_STEP * math.sqrt(_local_tolerance(self._rtol)) / (1.0 + pace)
         table[1] *= control[drive.STEP]
@@ -237,37 +248,55 @@ class AdaptiveSolver(Solver):
         counters[drive.EQUAL_STEPS] = counters[drive.RESTARTING] = 0
         return True
 
-    def _edge(self, now: float, end: float) -> tuple[np.ndarray, bool]:
-        """Parameters at the midpoints at the end of the next step, and whether they are moving."""
+    def _edge(self, now: float, end: float) -> tuple[np.ndarray, np.ndarray, bool]:
+        """Parameters at the end of the next step, and whether they are moving.
+
+        As a profile over equal arclengths and at the midpoints; the former has one place where
+        they are the same all along the edge, and the latter is then complete.
+        """
         if not self._conditions.varies(now, end):
             if self._edges is None or self._edges[0] != end:
-                self._edges = (end, self._midpoints(now))
-            return self._edges[1], False
+                self._edges = (end, *self._parameters(now))
+            return *self._edges[1:], False
         h = drive.bounded_step(self._control[drive.STEP], now, end)
         if h == end - now:
-            return self._midpoints(end, before=True), True
-        return self._midpoints(now + h), True
+            return *self._parameters(end, before=True), True
+        return *self._parameters(now + h), True
 
-    def _midpoints(self, time: float, *, before: bool = False) -> np.ndarray:
-        """Local parameters at the midpoints and G, shape (8, nodes)."""
-        nodes = layout.nodes_of(self._table)
-        local = self._conditions.edge(time, 2 * nodes, before=before)[:, 1::2]
+    def _parameters(self, time: float, *, before: bool = False) -> tuple[np.ndarray, np.ndarray]:
+        """Local parameters and G as `_edge` returns them, shapes (8, places) and (8, nodes)."""
+        places = 1 if self._conditions.uniform else _PLACES
+        local = self._conditions.edge(time, places, before=before)
         rate = self._conditions.tension_rate(time, before=before)
-        return np.vstack([local, np.full(nodes, rate)])
+        profile = np.vstack([local, np.full(places, rate)])
+        return profile, np.repeat(profile[:, :1], layout.nodes_of(self._table), axis=1)
+
+    def _midpoints(self, time: float) -> np.ndarray:
+        """Local parameters at the midpoints as they are now and G, shape (8, nodes)."""
+        profile, edge = self._parameters(time)
+        if profile.shape[1] > 1:
+            _, _, density = layout.fields(self._table[0])
+            hold(density, self._mesh, edge.shape[1])
+            edge_on_mesh(profile, density, edge, self._work)
+        return edge
 
     def _fit_grid(self) -> None:
         """Go on with as many nodes as the spectrum asks for."""
-        state = self._table[0]
-        nodes = layout.nodes_of(state)
-        allowed = resolution.allowance(_grid_tolerance(self._rtol), self._control[drive.CONTRAST])
-        waves = resolution.spectrum(layout.angle(state), layout.bound(state))
-        self._counters[drive.CHECK_DUE] = 0
-        wanted = resolution.wanted_nodes(waves, nodes, allowed, self._min_nodes, self._max_nodes)
-        wanted = min(wanted, self._max_nodes)
+        nodes = layout.nodes_of(self._table)
+        due = int(self._counters[drive.CHECK_DUE])
+        self._counters[drive.CHECK_DUE] = drive.KEEP
+        if due == drive.FINER:
+            wanted = resolution.finer(nodes, self._max_nodes)
+        elif due == drive.COARSER:
+            wanted = resolution.coarser(nodes, self._min_nodes)
+        else:
+            wanted = self._fewest_nodes(nodes)
         if wanted != nodes:
             self._hold(layout.regridded(self._table[:DIFFERENCES], wanted))
             self._log_rate = layout.resampled_midpoints(self._log_rate, wanted)
             self._tally[2] += 1
+            self._control[drive.MISSED] *= (nodes / wanted) ** 10
+            self._control[drive.PEAK] *= (nodes / wanted) ** 5
             edge = self._midpoints(self.time)
             self._counters[drive.RATES] += 1
             drive.bend_history(
@@ -276,9 +305,21 @@ class AdaptiveSolver(Solver):
                 self._table,
                 self._log_rate,
                 edge,
+                self._mesh,
                 self._matrix,
                 self._work,
             )
+
+    def _fewest_nodes(self, nodes: int) -> int:
+        """Return as many nodes as the spectrum of the state asks for, ``nodes`` at most."""
+        state, control = self._table[0], self._control
+        allowed = resolution.allowance(
+            _grid_tolerance(self._rtol), control[drive.CONTRAST], formed=False
+        )
+        waves = resolution.spectrum(layout.angle(state), layout.bound(state), layout.density(state))
+        return resolution.fewest_nodes(
+            waves, resolution.COARSEN * allowed, self._min_nodes, nodes - 1
+        )
 
     def _no_root(self, time: float) -> Breakdown:
         return Breakdown(
@@ -307,10 +348,10 @@ class AdaptiveSolver(Solver):
 
 
 def _grid_tolerance(rtol: float) -> float:
-    """Part of slopes of size 1 that a grid may miss for an error of ``rtol`` (measured)."""
-    return float(0.32 * (28.6 * rtol) ** 0.625)
+    """Part of slopes of size 1 that the nodes may miss on average for an error of ``rtol``."""
+    return float(max(3.0 * rtol * min(1.0, (1e-4 / rtol) ** 0.3), 1e-9))
 
 
 def _local_tolerance(rtol: float) -> float:
-    """Local error that leaves a global error of about ``rtol`` at t = 5 (measured)."""
-    return float(0.08 * rtol * min(1.0, (rtol / 1e-4) ** 0.05))
+    """Local error that leaves an error of a few ``rtol`` at t = 100 (measured)."""
+    return 0.002 * rtol

@@ -7,19 +7,19 @@ import math
 import numpy as np
 
 from cellcrawl.curve import fourier
-from cellcrawl.solvers.adaptive.rates import AREA, LENGTH, ORIGIN_X, SCALARS, TENSION
+from cellcrawl.solvers.adaptive.rates import AREA, FIELDS, LENGTH, ORIGIN_X, SCALARS, TENSION
 from cellcrawl.solvers.adaptive.staggered import HALO
 from cellcrawl.starts.base import CellState
 
 
 def size(nodes: int) -> int:
     """Entries of a state on ``nodes`` nodes."""
-    return 2 * (nodes + 2 * HALO) + SCALARS
+    return FIELDS * (nodes + 2 * HALO) + SCALARS
 
 
 def nodes_of(state: np.ndarray) -> int:
     """Nodes of a state, or of a stack of them."""
-    return int(state.shape[-1] - SCALARS) // 2 - 2 * HALO
+    return int(state.shape[-1] - SCALARS) // FIELDS - 2 * HALO
 
 
 def angle(state: np.ndarray) -> np.ndarray:
@@ -34,10 +34,17 @@ def bound(state: np.ndarray) -> np.ndarray:
     return state[..., first : first + nodes]
 
 
-def bound_with_halo(state: np.ndarray) -> np.ndarray:
-    """Bound fraction at the midpoints with its halo, of one state; a view."""
+def density(state: np.ndarray) -> np.ndarray:
+    """Density of the arclength over the nodes, of mean 1, at the midpoints; a view."""
+    nodes = nodes_of(state)
+    first = 2 * nodes + 5 * HALO
+    return state[..., first : first + nodes]
+
+
+def fields(state: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Angle, bound fraction and density with their halos, of one state; views."""
     span = nodes_of(state) + 2 * HALO
-    return state[span : 2 * span]
+    return state[:span], state[span : 2 * span], state[2 * span : 3 * span]
 
 
 def scalars(state: np.ndarray) -> np.ndarray:
@@ -56,6 +63,7 @@ def from_cell(cell: CellState, nodes: int) -> np.ndarray:
     curve = cell.curve
     angle(state)[:] = fourier.resample(curve.theta - winding(curve.nodes), nodes)
     bound(state)[:] = fourier.resample(cell.bound_fraction, nodes, math.pi / nodes)
+    density(state)[:] = 1.0
     values = scalars(state)
     values[LENGTH], values[TENSION], values[AREA] = curve.length, cell.tension, curve.area
     values[ORIGIN_X : ORIGIN_X + 2] = curve.origin
@@ -67,6 +75,7 @@ def regridded(states: np.ndarray, nodes: int) -> np.ndarray:
     moved = np.zeros((len(states), size(nodes)))
     angle(moved)[:] = fourier.resample(angle(states), nodes)
     bound(moved)[:] = resampled_midpoints(bound(states), nodes)
+    density(moved)[:] = resampled_midpoints(density(states), nodes)
     scalars(moved)[:] = scalars(states)
     return moved
 

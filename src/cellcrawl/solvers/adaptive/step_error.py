@@ -11,6 +11,7 @@ from cellcrawl.solvers.adaptive.rates import AREA, LENGTH, ORIGIN_X, ORIGIN_Y, T
 from cellcrawl.solvers.adaptive.staggered import HALO, sum_of_squares
 
 _TENSION_SCALE = 100.0
+_DENSITY = 1.0
 
 
 @kernel
@@ -24,7 +25,8 @@ def relative_size(error: np.ndarray, state: np.ndarray, nodes: int, contrast: fl
     span = nodes + 2 * HALO
     square = sum_of_squares(error[:span], nodes) + sum_of_squares(error[span:], nodes)
     square /= nodes * contrast**2
-    e, u = error[2 * span :], state[2 * span :]
+    square += sum_of_squares(error[2 * span :], nodes) * (_DENSITY**2 / nodes)
+    e, u = error[3 * span :], state[3 * span :]
     square += (e[LENGTH] / u[LENGTH]) ** 2 + (e[AREA] / u[AREA]) ** 2
     square += (e[TENSION] / (abs(u[TENSION]) + _TENSION_SCALE)) ** 2
     square += e[ORIGIN_X] ** 2 + e[ORIGIN_Y] ** 2

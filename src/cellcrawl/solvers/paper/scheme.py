@@ -23,6 +23,7 @@ from cellcrawl.solvers.paper import tangent_angle
 from cellcrawl.starts.base import CellState
 from cellcrawl.validation import real_number, whole_number
 
+_KEPT = 1e-4  # both are kept to rounding at the steps; between two they are interpolated
 _STABLE = 2.0  # explicit Euler decays while step * rate < 2
 
 
@@ -102,7 +103,7 @@ class PaperSolver(Solver):
         kappa, cosine, sine = np.empty_like(theta), np.cos(theta), np.sin(theta)
         x, z = np.empty_like(theta), np.empty_like(theta)
         tangent_angle.curvature(theta, length, kappa)
-        tangent_angle.points(length, cosine, sine, kappa, x, z)
+        gap = tangent_angle.points(length, cosine, sine, kappa, x, z)
         area = float(scalars[paper_step.AREA])
         center = tangent_angle.centroid(length, area, cosine, sine, x, z)
         origin_x = float(scalars[paper_step.ORIGIN_X])
@@ -124,6 +125,7 @@ class PaperSolver(Solver):
             area=area,
             centroid_x=center[0] + origin_x,
             centroid_y=center[1] + origin_y,
+            closure_gap=gap,
         )
 
     def checkpoint(self) -> dict[str, np.ndarray]:
@@ -149,6 +151,10 @@ class PaperSolver(Solver):
             scalars = np.array(checkpoint["previous_scalars"], dtype=float)
             fields = np.array(checkpoint["previous_fields"], dtype=float)
             self._previous = (float(scalars[-1]), fields, scalars[:-1])
+
+    @property
+    def invariant_tolerance(self) -> float:
+        return _KEPT
 
     def options(self) -> dict[str, Any]:
         return {"nodes": self._nodes, "dt": self._dt}

@@ -2,7 +2,8 @@
 
 State: tangent angle ``theta``, bound fraction ``n`` and ``y = log r`` at the nodes, and the scalars
 length, tension, position of node 0 and area. The area is that of the shape, so the Euler step of
-``sigma_t = G A_t`` keeps ``sigma - G A`` to rounding.
+``sigma_t = G A_t`` keeps ``sigma - G A`` to rounding. Every step ends with the outline closed
+again: angle and length advance apart, and nothing in their equations takes a gap away.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from cellcrawl.physics.laws import edge_velocity
 from cellcrawl.solvers.cyclic import solve_cyclic_tridiagonal
 from cellcrawl.solvers.paper.tangent_angle import (
     central_difference,
+    close,
     curvature,
     enclosed_area,
     points,
@@ -115,10 +117,11 @@ def advance(
         if not (0.0 < new[LENGTH] < np.inf):
             return NOT_FINITE, 0, step
 
-        curvature(new_theta, new[LENGTH], kappa)
         for i in range(nodes):
             cosine[i] = math.cos(new_theta[i])
             sine[i] = math.sin(new_theta[i])
+        close(new_theta, cosine, sine)
+        curvature(new_theta, new[LENGTH], kappa)
         gap = points(new[LENGTH], cosine, sine, kappa, x, z)
         new[CLOSURE] = max(scalars[CLOSURE], gap)
         new[AREA] = enclosed_area(new[LENGTH], cosine, sine, x, z)

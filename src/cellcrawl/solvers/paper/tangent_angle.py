@@ -32,6 +32,32 @@ def curvature(theta: np.ndarray, length: float, out: np.ndarray) -> None:
 
 
 @kernel
+def close(theta: np.ndarray, cosine: np.ndarray, sine: np.ndarray) -> None:
+    """Close the outline in place by the least change of the angles that does so to first order.
+
+    That change is a combination of sine and cosine of the angle itself, ``p sin + q cos``; what it
+    leaves is the square of the gap. ``cosine`` and ``sine`` are those of ``theta``, before and
+    after.
+    """
+    sum_x = sum_y = square_x = square_y = mixed = 0.0
+    for i in range(theta.size):
+        sum_x += cosine[i]
+        sum_y += sine[i]
+        square_x += cosine[i] * cosine[i]
+        square_y += sine[i] * sine[i]
+        mixed += cosine[i] * sine[i]
+    scale = 1.0 / (square_x * square_y - mixed * mixed)
+    p = scale * (sum_x * square_x + sum_y * mixed)
+    q = -scale * (sum_y * square_y + sum_x * mixed)
+    for i in range(theta.size):
+        turn = p * sine[i] + q * cosine[i]
+        theta[i] += turn
+        before, half = cosine[i], 0.5 * turn * turn
+        cosine[i] -= turn * sine[i] + half * before
+        sine[i] += turn * before - half * sine[i]
+
+
+@kernel
 def points(
     length: float,
     cosine: np.ndarray,

@@ -19,6 +19,7 @@ from cellcrawl.solvers.spline.outline import (
     XU,
     YU,
     copy,
+    enclose,
     measure,
     sharpest_turn,
     unevenness,
@@ -27,7 +28,9 @@ from cellcrawl.solvers.spline.periodic import ZIGZAG
 from cellcrawl.solvers.spline.remeshing import SPREAD_ROWS, remesh
 from cellcrawl.solvers.spline.runge_kutta import EXPLICIT_LIMIT, between_ends, step
 
-TENSION, ANGLE = range(2)  # `scalars`; ANGLE is the tangent's at the first marker, continuous
+# `scalars`: the tangent's angle at the first marker, continuous; the area the tension goes with
+TENSION, ANGLE, AREA = range(3)
+SCALARS = 3
 STEPS, PARTS, REMESHINGS, RETRIES, MOST_PARTS = range(5)  # `counters`
 STEPPED = BALANCED
 UNRESOLVED, TOO_STIFF = UNSETTLED + 1, UNSETTLED + 2
@@ -79,10 +82,12 @@ def advance(
     measure(fields, shape)
     for taken in range(steps):
         copy(fields, before_fields)
-        before_scalars[TENSION], before_scalars[ANGLE] = scalars[TENSION], scalars[ANGLE]
+        for row in range(SCALARS):
+            before_scalars[row] = scalars[row]
         between_ends(ends, 0.0, edge)
         if unevenness(shape) > UNEVEN:
             remesh(fields, shape, spare)
+            enclose(scalars[AREA], fields, shape)
             code, marker = solve_balance(fields, scalars[TENSION], shape, edge)
             if code != BALANCED:
                 copy(before_fields, fields)
@@ -98,9 +103,9 @@ def advance(
         parts = math.floor(rate * dt / EXPLICIT_LIMIT) + 1
         code = UNSETTLED
         for _ in range(1 + _RETRIES):
-            tension = scalars[TENSION]
+            tension, area = scalars[TENSION], scalars[AREA]
             for part in range(parts):
-                code, marker, tension = step(
+                code, marker, tension, area = step(
                     dt / parts,
                     part / parts,
                     (part + 1) / parts,
@@ -109,6 +114,7 @@ def advance(
                     tension_rates,
                     fields,
                     tension,
+                    area,
                     shape,
                     edge,
                     slopes,
@@ -126,7 +132,7 @@ def advance(
             parts *= 4
         if code != BALANCED:
             return code, marker, taken
-        scalars[TENSION] = tension
+        scalars[TENSION], scalars[AREA] = tension, area
         turned = (math.atan2(shape[YU, 0], shape[XU, 0]) - scalars[ANGLE]) / (2.0 * math.pi)
         scalars[ANGLE] += 2.0 * math.pi * (turned - math.floor(turned + 0.5))
         counters[STEPS] += 1

@@ -78,6 +78,22 @@ def centroid(fields: np.ndarray, shape: np.ndarray) -> tuple[float, float]:
 
 
 @kernel
+def enclose(wanted: float, fields: np.ndarray, shape: np.ndarray) -> None:
+    """Scale the outline about its centroid, in place, to enclose the area ``wanted``.
+
+    ``shape`` is its `measure` before and after: made anew, so that a step has the same bits whether
+    it follows another in the same call or not.
+    """
+    x, y = fields[X], fields[Y]
+    center_x, center_y = centroid(fields, shape)
+    scale = math.sqrt(wanted / area(fields, shape))
+    for i in range(x.size):
+        x[i] = center_x + scale * (x[i] - center_x)
+        y[i] = center_y + scale * (y[i] - center_y)
+    measure(fields, shape)
+
+
+@kernel
 def unevenness(shape: np.ndarray) -> float:
     """Largest over smallest spacing of the markers."""
     least = most = shape[SPEED, 0]

@@ -3,8 +3,9 @@
 ARK3(2)4L[2]SA of Kennedy & Carpenter (Appl. Numer. Math. 44, 139, 2003). Markers and binding take
 its explicit part, diffusion and tension its implicit, L-stable part. A stage's markers are known
 before its diffusion, and both before its tension, so that every implicit solve is small: a cyclic
-tridiagonal system, then one number. Both parts weigh the stages alike, which keeps
-``sigma - G A`` to the order of the scheme.
+tridiagonal system, then one number. The area that the tension stands for is weighed like it, stage
+by stage, and the outline scaled to it at the end of the step: otherwise errors of the step add up
+in ``sigma - G A``, and nothing takes them away.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import numpy as np
 from cellcrawl._compile import kernel
 from cellcrawl.solvers.spline.balance import BALANCED, rates, solve_balance, solve_tension
 from cellcrawl.solvers.spline.linkers import DIFFUSIVITY, second_derivative_after
-from cellcrawl.solvers.spline.outline import LOG_R, N, X, Y, copy, measure
+from cellcrawl.solvers.spline.outline import LOG_R, N, X, Y, copy, enclose, measure
 
 STAGES = 4
 EXPLICIT_LIMIT = 2.5  # step times decay rate; the explicit part alone is stable up to 3.66
@@ -66,11 +67,12 @@ def step(
     tension_rates: np.ndarray,
     fields: np.ndarray,
     tension: float,
+    area: float,
     shape: np.ndarray,
     edge: np.ndarray,
     slopes: np.ndarray,
     work: np.ndarray,
-) -> tuple[int, int, float]:
+) -> tuple[int, int, float, float]:
     """Advance ``fields`` (x, y, n, log r at the markers) by ``dt`` in place.
 
     Parameters
@@ -81,6 +83,8 @@ def step(
         Parameters along the edge, linear in time between the two.
     tension_rates : array, shape (2,)
         ``G`` likewise.
+    tension, area : float
+        The area is the one that goes with the tension: ``dA = d sigma / G``.
     shape : array, shape (SHAPE_ROWS, markers)
         The `measure` of the markers before and after.
     edge : array, shape (7, markers)
@@ -92,11 +96,11 @@ def step(
     -------
     code, marker : int
         `BALANCED`, or why there is no step and where; ``fields`` are then of no use.
-    tension : float
+    tension, area : float
     """
     stage, spare = work[:4], work[4:]
     rate = tension_rates[0]
-    tension_slopes = np.zeros(STAGES)
+    tension_slopes, area_slopes = np.zeros(STAGES), np.zeros(STAGES)
     copy(fields, stage)
     sigma = tension
     for i in range(STAGES):
@@ -119,20 +123,23 @@ def step(
                 known += dt * _IMPLICIT[i, j] * tension_slopes[j]
             code, marker, sigma = solve_tension(stage, sigma, known, implicit * rate, shape, edge)
             if code != BALANCED:
-                return code, marker, tension
-        tension_slopes[i] = rate * rates(stage, shape, edge, own)
+                return code, marker, tension, area
+        area_slopes[i] = rates(stage, shape, edge, own)
+        tension_slopes[i] = rate * area_slopes[i]
 
     for j in range(STAGES):
         tension += dt * _WEIGHTS[j] * tension_slopes[j]
+        area += dt * _WEIGHTS[j] * area_slopes[j]
         for node in range(fields.shape[1]):
             weight = dt * _WEIGHTS[j]
             fields[X, node] += weight * slopes[j, X, node]
             fields[Y, node] += weight * slopes[j, Y, node]
             fields[N, node] += weight * (slopes[j, N, node] + slopes[j, SPREADING, node])
     measure(fields, shape)
+    enclose(area, fields, shape)
     copy(stage[LOG_R:], fields[LOG_R:])
     code, marker = solve_balance(fields, tension, shape, edge)
-    return code, marker, tension
+    return code, marker, tension, area
 
 
 @kernel

@@ -19,6 +19,7 @@ from cellcrawl.validation import real_number, whole_number
 
 _USUAL_NODES = 512
 _USUAL_STEP = 2e-3
+_KEPT = 1e-4  # the area is kept to rounding at the steps; between two it is interpolated
 _STEPS_PER_CALL = 1000  # between two looks at Ctrl-C
 
 
@@ -54,10 +55,10 @@ class SplineSolver(Solver):
         self._slopes = np.empty((STAGES, 4, nodes))
         self._work = np.empty((drive.WORK_ROWS, nodes))
         self._fields = np.zeros((4, nodes))
-        self._scalars = np.zeros(2)
+        self._scalars = np.zeros(drive.SCALARS)
         self._counters = np.zeros(5, np.int64)
         self._before_fields = np.zeros((4, nodes))  # at the beginning of the last step
-        self._before_scalars = np.zeros(2)
+        self._before_scalars = np.zeros(drive.SCALARS)
         self._before_time = math.nan
         if start is not None:
             self._begin(start)
@@ -116,6 +117,14 @@ class SplineSolver(Solver):
         self._scalars = np.array(checkpoint["scalars"], dtype=float)
         self._before_fields = np.array(checkpoint["before_fields"], dtype=float)
         self._before_scalars = np.array(checkpoint["before_scalars"], dtype=float)
+        if self._scalars.size == drive.AREA:  # saved by 0.1.0, whose tension went with any area
+            area = outline.area(self._fields, frames.measured(self._fields))
+            self._scalars = np.append(self._scalars, area)
+            self._before_scalars = np.append(self._before_scalars, area)
+
+    @property
+    def invariant_tolerance(self) -> float:
+        return _KEPT
 
     def options(self) -> dict[str, Any]:
         return {"nodes": self._nodes, "dt": self._dt}
@@ -136,9 +145,9 @@ class SplineSolver(Solver):
         fields[X], fields[Y] = start.curve.points.T
         fields[N] = start.bound_fraction
         fields[LOG_R] = math.log(self._conditions.at(self.time).r_p)
-        self._scalars[:] = (start.tension, start.curve.theta[0])
-        edge = self._conditions.edge(self.time, self._nodes)
         shape = frames.measured(fields)
+        self._scalars[:] = (start.tension, start.curve.theta[0], outline.area(fields, shape))
+        edge = self._conditions.edge(self.time, self._nodes)
         turn, marker = outline.sharpest_turn(shape)
         if turn > drive.LARGEST_TURN:
             raise InputError(
@@ -202,14 +211,14 @@ class SplineSolver(Solver):
 
     def _at(self, time: float) -> frames.State:
         """Return the state at a time in the last step."""
-        last = frames.State(self.time, self._fields, *map(float, self._scalars))
+        tension, angle, _ = map(float, self._scalars)
+        last = frames.State(self.time, self._fields, tension, angle)
         if abs(time - self.time) <= ON_GRID * self._dt:
             return last._replace(time=time)
         if not self._before_time <= time <= self.time:
             raise ValueError(f"t = {time} is not within the last step, which ends at {self.time}")
-        first = frames.State(
-            self._before_time, self._before_fields, *map(float, self._before_scalars)
-        )
+        tension, angle, _ = map(float, self._before_scalars)
+        first = frames.State(self._before_time, self._before_fields, tension, angle)
         conditions, nodes = self._conditions, self._nodes
         first_rates = frames.rates_of_change(
             first, conditions.edge(first.time, nodes), conditions.tension_rate(first.time)
