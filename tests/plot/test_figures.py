@@ -149,7 +149,8 @@ def test_a_cell_that_never_moves_and_a_single_record_can_be_drawn():
 
 def test_panels_of_the_summary_share_their_sides_and_their_labels_stay_clear():
     run = RUN.copy()
-    run["tension"] = ("time", 1240.45 + 0.02 * np.sin(run["time"].values))  # long tick labels
+    values = 1240.45 + 0.02 * np.sin(run["time"].values)  # long tick labels
+    run["tension"] = run["tension"].copy(data=values)
     figure = cc.plot.summary(run)
     png(figure)
     path, top, _, *series = figure.axes

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import cellcrawl as cc
-from cellcrawl.locks import locked_folder
+from cellcrawl.locks import locked
 from cellcrawl.reproduction import reproduce
 from cellcrawl.reproduction.fig5 import period
 from cellcrawl.reproduction.fig6 import routes
@@ -82,15 +82,19 @@ def test_the_table_of_points_leaves_torn_cells_out_of_means(tmp_path):
 
 
 def test_two_at_once_in_one_folder_are_refused(tmp_path):
-    with locked_folder(tmp_path, ".lock"), pytest.raises(cc.InputError, match="another process"):
+    with (
+        locked(tmp_path / ".lock", tmp_path),
+        pytest.raises(cc.InputError, match="another process"),
+    ):
         next(reproduce(["fig2"], tmp_path))
     hold = (
-        "import sys; from pathlib import Path; from cellcrawl.locks import locked_folder\n"
-        "with locked_folder(Path(sys.argv[1]), '.lock'): raise SystemExit(7)"
+        "import sys; from pathlib import Path; from cellcrawl.locks import locked\n"
+        "folder = Path(sys.argv[1])\n"
+        "with locked(folder / '.lock', folder): raise SystemExit(7)"
     )
     run = subprocess.run([sys.executable, "-c", hold, str(tmp_path)], check=False)
     assert run.returncode == 7
-    with locked_folder(tmp_path, ".lock"):
+    with locked(tmp_path / ".lock", tmp_path):
         pass  # a process that ended holds nothing
 
 

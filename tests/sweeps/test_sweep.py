@@ -14,6 +14,7 @@ from cellcrawl.sweeps import crew, store, worker
 from cellcrawl.sweeps.executors import InProcess
 from cellcrawl.sweeps.identity import run_key
 from cellcrawl.sweeps.parts import COLUMNS
+from cellcrawl.sweeps.store import checksum
 from cellcrawl.sweeps.worker import Outcome
 from tests.sweeps.starts import Misbehaving
 
@@ -212,7 +213,9 @@ def test_a_folder_that_is_not_ours_or_damaged_is_left_as_it_is(tmp_path, spoil, 
 
 def change(out: Path, **values) -> None:
     path = out / "sweep.json"
-    path.write_text(json.dumps({**json.loads(path.read_text()), **values}))
+    changed = {**json.loads(path.read_text()), **values}
+    del changed["checksum"]
+    path.write_text(json.dumps({**changed, "checksum": checksum(changed)}))
 
 
 def cut(out: Path) -> None:

@@ -24,6 +24,7 @@ _KINDS = (
     "scaling",
     "startup",
     "modes",
+    "storage",
     "sweep",
 )
 
@@ -59,6 +60,7 @@ def bench(
       references      the true values of ten cells, with a check by CVODE
       scaling         cost against nodes and against the length of the run
       startup         import, first and second start from the shell
+      storage         size of a stored run, time to write and to read it
       sweep           scheduling, memory of the driver, workers
       modes           how often the classifier is right, and as often as it says
 
@@ -185,6 +187,13 @@ def _modes(quick: bool, known: References) -> _Result:
     return _Result(data, modes.plot(), {"confidence": confidence.plot(together, apart)})
 
 
+def _storage(quick: bool, known: References) -> _Result:
+    from cellcrawl.bench import storage
+
+    rows = list(_table(storage.Stored, storage.measure(quick)))
+    return _Result({"stored": [row._asdict() for row in rows]}, None)
+
+
 def _sweep(quick: bool, known: References) -> _Result:
     from cellcrawl.bench import sweeps
 
@@ -200,6 +209,7 @@ _MEASURE = {
     "references": _references,
     "scaling": _scaling,
     "startup": _startup,
+    "storage": _storage,
     "sweep": _sweep,
 }
 

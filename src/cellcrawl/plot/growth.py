@@ -60,7 +60,7 @@ def growth(
     """
     run = drawable(dataset)
     one_of("field", field, _SYMBOLS)
-    if units_of(run).system != "dimensionless":
+    if units_of(run).system != "model":
         raise InputError("linear theory is without dimension: give the run before Scales.dataset")
     if decode_attribute(run, "schedule"):
         raise InputError("the parameters of this run change: linear theory has one set of them")

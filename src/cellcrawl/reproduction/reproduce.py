@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from cellcrawl.errors import InputError
-from cellcrawl.locks import locked_folder
+from cellcrawl.locks import locked
 from cellcrawl.reproduction.recipe import Recipe
 from cellcrawl.reproduction.registry import recipes_named
 from cellcrawl.validation import one_of, whole_number
@@ -87,7 +87,7 @@ def _each(
 ) -> Iterator[Made]:
     from cellcrawl.reproduction.workplace import Workplace
 
-    with locked_folder(root, ".lock"):
+    with locked(root / ".lock", root):
         for recipe in recipes:
             place = Workplace(root, recipe.name, progress=progress, **choices)
             yield _made(recipe, place, choices, again)

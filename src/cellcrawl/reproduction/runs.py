@@ -54,6 +54,10 @@ def kept_run(
     run = _opened(path, described.t_end)
     if run is None:
         folder.mkdir(parents=True, exist_ok=True)
+        store = RunStore(path)
+        if store.exists():  # damaged, and in a place that nothing else is put
+            with store.writing():
+                store.remove()
         run = simulate(
             parameters,
             t_end,
@@ -62,7 +66,6 @@ def kept_run(
             save_every=save_every,
             nodes=nodes,
             output=path,
-            overwrite=True,
             **options,
         )
     if run.attrs["status"] == "interrupted":

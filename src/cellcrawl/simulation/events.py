@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from cellcrawl.curve import Crossing, first_crossing
+from cellcrawl.data import MODEL_ENDINGS, RESUMABLE, STATUSES
 from cellcrawl.solvers import Breakdown, Solver
 
-STATUSES: Final[dict[str, str]] = {
-    "completed": "reached t_end",
-    "fragmented": "the edge crossed itself: the cell tears, and the model means nothing beyond",
-    "out_of_range": "no off-rate r >= 1 balances the forces somewhere: outside the model",
-    "not_finite": "a value was no longer finite: usually a step that is too long",
-    "step_too_small": "the solver could not meet its tolerance with any reasonable step",
-    "unresolved": "the shape needs more nodes than allowed",
-    "inconsistent": "the shape has left the tension law, or come open: the result is wrong beyond",
-    "interrupted": "stopped by the user; can be resumed",
-    "running": "not ended: still going, or killed; can be resumed",
-}
-RESUMABLE: Final = ("completed", "interrupted", "running")
-MODEL_ENDINGS: Final = ("completed", "fragmented")  # the run ended as the model allows
+__all__ = [
+    "MODEL_ENDINGS",
+    "RESUMABLE",
+    "STATUSES",
+    "CrossingFound",
+    "crossing_at",
+    "locate_crossing",
+]
 
 _TIME_RESOLUTION = 1e-4
 

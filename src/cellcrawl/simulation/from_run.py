@@ -10,11 +10,15 @@ import numpy as np
 import xarray as xr
 
 from cellcrawl.curve import Curve, fourier
+from cellcrawl.data import is_dimensionless, records_with
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import Parameters
 from cellcrawl.simulation.storage import open_run
 from cellcrawl.starts import CellState
 from cellcrawl.validation import whole_number
+
+_NEEDED = ("x", "y", "theta", "length", "bound_fraction", "tension", "area")
+_SMALLEST, _LARGEST = 0.03, 300.0  # areas of a cell that is in the model's units
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +39,12 @@ class FromRun:
     def state(self, parameters: Parameters, nodes: int) -> CellState:
         """Return the saved state on ``nodes`` nodes; its tension is kept."""
         frame = self.saved_record()
+        area = float(frame["area"])
+        if not _SMALLEST <= area <= _LARGEST:
+            raise InputError(
+                f"FromRun: the area of this record is {area:.3g}, and a cell's is about pi in the "
+                "model's units: give a run without dimension"
+            )
         origin = np.array([frame["x"][0].item(), frame["y"][0].item()])
         curve = Curve(frame["theta"].values, frame["length"].item(), origin)
         bound = frame["bound_fraction"].values
@@ -44,11 +54,26 @@ class FromRun:
         return CellState(curve, bound, frame["tension"].item())
 
     def saved_record(self) -> xr.Dataset:
-        """Return the saved record that is the start."""
-        dataset = self._dataset()
+        """Return the saved record that is the start.
+
+        Raises
+        ------
+        InputError
+            If there is no such record, or the dataset is no run in the model's units.
+        """
+        dataset = records_with(self._dataset())
+        if not is_dimensionless(dataset):
+            raise InputError(
+                "FromRun needs a run in the model's units, and this one is in SI: give the run "
+                "that it was made from"
+            )
         count = dataset.sizes["time"]
         record = whole_number("record", self.record, -count, count - 1)
-        return dataset.isel(time=record).load()
+        try:
+            one = records_with(dataset.isel(time=[record]), *_NEEDED)
+        except InputError as error:
+            raise InputError(f"FromRun, of record {record} alone: {error}") from None
+        return one.isel(time=0).load()
 
     def describe(self) -> dict[str, Any]:
         """Return this start as plain values for JSON."""

@@ -5,21 +5,24 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
-from cellcrawl.errors import InputError
+from cellcrawl.data import FIELDS, SCHEMA_VERSION, decode_attribute
+from cellcrawl.errors import CellcrawlError, InputError, StorageError
 from cellcrawl.parameters import CONSTANT, Conditions, Parameters, Schedule
-from cellcrawl.simulation.dataset import decode_attribute
 from cellcrawl.simulation.description import DEFAULT_SOLVER, RunDescription, solver_named
 from cellcrawl.simulation.events import RESUMABLE
 from cellcrawl.simulation.following import Follower, Kept, same_time
 from cellcrawl.simulation.progress import Progress, make_progress
-from cellcrawl.simulation.recorder import MemoryRecorder, Recorder, StoreRecorder
+from cellcrawl.simulation.recorder import Checkpoint, MemoryRecorder, Recorder, StoreRecorder
 from cellcrawl.simulation.storage import RunStore
 from cellcrawl.simulation.tension_law import KEY, TensionLaw
 from cellcrawl.solvers import Solver
 from cellcrawl.starts import RandomPerturbation, Start
 from cellcrawl.validation import real_number
+
+_SAME = 1e-9  # a restored state gives its last record to rounding
 
 
 def simulate(
@@ -62,7 +65,7 @@ def simulate(
         ``run.nc`` (netCDF) or ``run.zarr``. Written in blocks while the run goes: memory stays
         flat, and a killed run opens with `open_run` and goes on with `resume`.
     overwrite : bool
-        Replace a run that is already at ``output``.
+        Replace a run that is already at ``output``; anything else there is refused.
     progress : bool
         Show a progress bar with the time left and the tension.
     **options
@@ -80,7 +83,8 @@ def simulate(
     InputError
         For a value that cannot be used; nothing has been computed or written then.
     StorageError
-        If ``output`` cannot be written; what was written before stays readable.
+        If ``output`` cannot be written or loses its files meanwhile; what was written before stays
+        readable.
 
     Examples
     --------
@@ -99,17 +103,28 @@ def simulate(
         options=options,
     )
     store = RunStore(output) if output is not None else None
-    if store is not None and store.exists() and not overwrite:
+    if store is not None:
+        _make_room(store, overwrite, remove=False)
+    engine = description.solver_at_start()
+    bar = make_progress(progress, 0.0, description.t_end)
+    if store is None:
+        return follow(description, engine, MemoryRecorder(), bar)
+    with store.writing():
+        _make_room(store, overwrite, remove=True)
+        return follow(description, engine, StoreRecorder(store, 0), bar)
+
+
+def _make_room(store: RunStore, overwrite: bool, *, remove: bool) -> None:
+    """See that a run may be written there; with ``remove``, delete the one it replaces."""
+    if not store.exists():
+        return
+    if not overwrite:
         raise InputError(
             f"{store.path} exists: give another output, resume it, or ask to overwrite it"
         )
-    engine = description.solver_at_start()
-    recorder: Recorder[xr.Dataset] = MemoryRecorder()
-    if store is not None:
-        if overwrite:
-            store.remove()
-        recorder = StoreRecorder(store, 0)
-    return follow(description, engine, recorder, make_progress(progress, 0.0, description.t_end))
+    store.refuse_what_is_no_run()
+    if remove:
+        store.remove()
 
 
 def follow(
@@ -143,12 +158,20 @@ def resume(path: str | Path, t_end: float, *, progress: bool = False) -> xr.Data
     Raises
     ------
     InputError
-        If there is no run, or it ended in a way that cannot go on (a torn cell).
+        If there is no run, it ended in a way that cannot go on (a torn cell), or another process
+        writes it.
+    StorageError
+        If the file is damaged, or cannot be written.
     """
     until = real_number("t_end", t_end, 0.0, 1e9)
     store = RunStore(path)
     if not store.exists():
         raise InputError(f"there is no run at {store.path}")
+    with store.writing():
+        return _resume(store, until, progress)
+
+
+def _resume(store: RunStore, until: float, progress: bool) -> xr.Dataset:
     with store.open() as saved:
         status, reached = saved.attrs["status"], float(saved.attrs["end_time"])
         if status not in RESUMABLE:
@@ -160,25 +183,57 @@ def resume(path: str | Path, t_end: float, *, progress: bool = False) -> xr.Data
             name: decode_attribute(saved, name)
             for name in ("parameters", "schedule", "start", "solver_options")
         }
-        for name in ("seed", "solver", "save_every", "cellcrawl_version", "schema_version"):
+        for name in ("seed", "solver", "save_every", "cellcrawl_version"):
             identity[name] = saved.attrs[name]
+        identity["schema_version"] = SCHEMA_VERSION
         records = int(saved.attrs["records_on_grid"])
-        spent = decode_attribute(saved, "diagnostics")["wall_time"]
+        spent = decode_attribute(saved, "diagnostics").get("wall_time", 0.0)
+        last = saved[["time", *FIELDS]].isel(time=[-1]).load()
     if status == "completed" and same_time(until, reached):
         store.consolidate()
         return store.open()
     if until < reached:
         raise InputError(f"{store.path} has reached t = {reached:g} already: t_end must be above")
+    checkpoint = store.checkpoint()
     conditions = Conditions(
         Parameters.from_dict(identity["parameters"]), Schedule(identity["schedule"])
     )
-    engine = solver_named(str(identity["solver"]))(None, conditions, **identity["solver_options"])
-    checkpoint = store.checkpoint()
-    engine.restore(checkpoint)
-    law = TensionLaw(conditions, engine.invariant_tolerance)
-    if KEY in checkpoint:  # or the run is older than the law's check, which then begins here
-        law.restore(checkpoint[KEY])
+    engine, law = _restored(checkpoint, conditions, identity, last, store.path)
+    store.check_records()
     bar = make_progress(progress, reached, until)
     recorder = StoreRecorder(store, records)
     every = float(identity["save_every"])
     return Follower(engine, law, recorder, identity, every, bar, records, spent).follow(until)
+
+
+def _restored(
+    checkpoint: Checkpoint,
+    conditions: Conditions,
+    identity: dict[str, Any],
+    last: xr.Dataset,
+    path: Path,
+) -> tuple[Solver, TensionLaw]:
+    """Return the solver in the state to go on from, which must be that of the last record."""
+    scheme = solver_named(str(identity["solver"]))
+    try:
+        engine = scheme(None, conditions, **identity["solver_options"])
+        engine.restore(checkpoint)
+        law = TensionLaw(conditions, engine.invariant_tolerance)
+        if KEY in checkpoint:  # or the run is older than the law's check, which then begins here
+            law.restore(checkpoint[KEY])
+        frame = engine.frame(float(last["time"].item()))
+        same = all(
+            np.allclose(getattr(frame, name), last[name].values[0], rtol=_SAME, atol=_SAME)
+            for name in FIELDS
+        )
+    except CellcrawlError:
+        raise
+    except Exception:  # a state of other names or shapes than this version's solver has
+        same = False
+    if not same:
+        raise StorageError(
+            f"the state to go on from in {path} is not that of its last record: the file was "
+            f"edited, or written by another version ({identity['cellcrawl_version']}); start a new "
+            "run from its last record with FromRun"
+        )
+    return engine, law

@@ -14,9 +14,8 @@ from typing import Final
 import numpy as np
 import xarray as xr
 
-from cellcrawl.errors import InputError
+from cellcrawl.data import SYSTEMS, VARIABLES, systems_of
 from cellcrawl.parameters.scales import KINDS, Scales
-from cellcrawl.simulation.dataset import FIELDS, TIME
 
 _MICRO: Final[dict[str, tuple[str, float]]] = {
     "m": ("um", 1e6),
@@ -27,9 +26,6 @@ _MICRO: Final[dict[str, tuple[str, float]]] = {
     "N/m": ("pN/um", 1e6),
 }
 """SI units that are unwieldy for a cell: what is written instead, and how many make one."""
-SYSTEMS: Final = ("dimensionless", "SI", "micrometres")
-_KIND_OF: Final = {kind.label: name for name, kind in KINDS.items()}
-_BARE: Final = ("", "1", "rad", "dimensionless", None)  # the same in every system, or not said
 
 
 @dataclass(frozen=True)
@@ -39,7 +35,7 @@ class Units:
     Attributes
     ----------
     system : str
-        One of `SYSTEMS`, or "own".
+        One of `cellcrawl.data.SYSTEMS`, or "own".
     scales : Scales or None
         What one dimensionless unit is in SI; None for a dimensionless dataset, or if unknown.
     """
@@ -57,14 +53,14 @@ class Units:
 
     def one(self, kind: str) -> float:
         """Return one dimensionless unit of that kind in these units; NaN if scales are unknown."""
-        if self.system == "dimensionless":
+        if self.system == "model":
             return 1.0
         if self.scales is None:
             return math.nan
         return KINDS[kind].size(self.scales) * _factor(kind, self.system)
 
 
-DIMENSIONLESS: Final = Units("dimensionless")
+DIMENSIONLESS: Final = Units("model")
 
 
 def units_of(dataset: xr.Dataset) -> Units:
@@ -78,27 +74,12 @@ def units_of(dataset: xr.Dataset) -> Units:
     if dataset.attrs.get("kind") == "outlines":
         length, time = (str(dataset.attrs.get(f"{what}_units", "")) for what in ("length", "time"))
         return Units("own", own=(length, time))
-    possible, said, variables = set(SYSTEMS), "", dataset.variables
-    for name, field in {"time": TIME, **FIELDS}.items():
-        label = variables[name].attrs.get("units") if name in variables else None
-        kind = _KIND_OF.get(field.units)
-        if label in _BARE or kind is None:
-            continue
-        fitting = {system for system in SYSTEMS if _label(kind, system) == label}
-        if not fitting:
-            known = ", ".join(dict.fromkeys(repr(_label(kind, system)) for system in SYSTEMS))
-            raise InputError(f"{name!r} is in {label!r}: a run has it in one of {known}")
-        if not possible & fitting:
-            raise InputError(
-                f"{name!r} is in {label!r} but {said}: put all into one system with Scales.dataset"
-            )
-        possible &= fitting
-        said = said or f"{name!r} is in {label!r}"
+    possible = systems_of(dataset, VARIABLES)
     scales = _scales(dataset)
     if possible == set(SYSTEMS):  # nothing said
         return DIMENSIONLESS if scales is None else Units("SI", scales)
     system = next(system for system in SYSTEMS if system in possible)
-    return Units(system, scales if system != "dimensionless" else None)
+    return Units(system, scales if system != "model" else None)
 
 
 def in_micrometres(dataset: xr.Dataset) -> xr.Dataset:
@@ -133,7 +114,7 @@ def _own_label(kind: str, length: str, time: str) -> str:
 
 
 def _label(kind: str, system: str) -> str:
-    if system == "dimensionless":
+    if system == "model":
         return KINDS[kind].label
     unit = KINDS[kind].unit
     return _MICRO.get(unit, (unit, 1.0))[0] if system == "micrometres" else unit

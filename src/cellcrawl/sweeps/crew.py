@@ -17,7 +17,7 @@ from cellcrawl.sweeps.chunking import ChunkSize
 from cellcrawl.sweeps.executors import means_killed, worker_count
 from cellcrawl.sweeps.grid import Grid
 from cellcrawl.sweeps.identity import run_key
-from cellcrawl.sweeps.parts import read_part, write_part
+from cellcrawl.sweeps.parts import find_part, read_part, write_part
 from cellcrawl.sweeps.pool import WorkerPool
 from cellcrawl.sweeps.progress import RunsBar
 from cellcrawl.sweeps.store import SweepStore, new_name
@@ -198,8 +198,8 @@ class Crew:
             self._bar.update(len(given_up), {row["status"]: 1 for row in given_up})
 
     def _keys_in_part(self, chunk: Chunk) -> set[str]:
-        path = self._store.layout.part(chunk.name)
-        return set(read_part(path, ("key",))["key"].to_pylist()) if path.exists() else set()
+        path = find_part(self._store.layout.part(chunk.name))
+        return set() if path is None else set(read_part(path, ("key",))["key"].to_pylist())
 
     def _put_back(self, tasks: tuple[Task, ...]) -> None:
         self._returned.extend(tasks)

@@ -17,6 +17,7 @@ from cellcrawl.starts import Start
 
 ROW_SCHEMA: Final = 1
 _DECIDING: Final = (
+    "data",
     "parameters",
     "physics",
     "curve",

@@ -7,11 +7,17 @@ import io
 import os
 from pathlib import Path
 from types import TracebackType
-from typing import Any, BinaryIO, Self
+from typing import Any, BinaryIO, Final, Self
 
+import h5py
+import numpy as np
 import xarray as xr
 
-from cellcrawl.errors import StorageError
+from cellcrawl.data import SCHEMA_VERSION
+from cellcrawl.simulation.checksums import damaged, digest
+from cellcrawl.simulation.lazy import readable
+
+_CHECKSUM: Final = "cellcrawl_checksum"
 
 
 class KeptRuns:
@@ -38,7 +44,7 @@ class KeptRuns:
         for name, variable in dataset.variables.items():
             written = group.create_variable(name, variable.dims, data=variable.values)
             written.attrs.update(variable.attrs)
-        group.attrs.update(dataset.attrs)
+        group.attrs.update({**dataset.attrs, _CHECKSUM: _checksum(dataset)})
         self._bytes.failed()
 
     def __exit__(
@@ -118,10 +124,40 @@ class _Patient(io.RawIOBase):
 
 
 def read_kept(path: Path, key: str) -> xr.Dataset:
-    """Return what was kept of a run, read into memory."""
-    try:
+    """Return what was kept of a run, read into memory.
+
+    Raises
+    ------
+    StorageError
+        If the file is missing or damaged.
+    """
+    with readable(path):
+        with h5py.File(path, "r") as file:  # h5netcdf complains twice of what fails here
+            dict(file.attrs)
         with xr.open_dataset(path, engine="h5netcdf", group=key, decode_times=False) as found:
-            return found.load()
-    except (OSError, KeyError, ValueError) as error:
-        reason = " ".join(str(error).split())[:150]
-        raise StorageError(f"cannot read run {key} in {path}: {reason}") from None
+            run = found.load()
+    told = run.attrs.pop(_CHECKSUM, None)
+    old = _is_old(run.attrs.get("schema_version"))
+    if told != _checksum(run) and not (told is None and old):
+        raise damaged(path)
+    return run
+
+
+def _checksum(dataset: xr.Dataset) -> str:
+    """Return a hash of all that a Dataset holds."""
+    layout = {
+        str(name): (
+            tuple(str(dim) for dim in variable.dims),
+            variable.shape,
+            {str(key): str(value) for key, value in variable.attrs.items()},
+        )
+        for name, variable in dataset.variables.items()
+    }
+    attributes = {str(name): value for name, value in dataset.attrs.items()}
+    values = {str(name): variable.values for name, variable in dataset.variables.items()}
+    return digest(attributes, layout, values)
+
+
+def _is_old(schema: Any) -> bool:
+    """Whether a run was written before there were checksums."""
+    return isinstance(schema, (int, np.integer)) and int(schema) < SCHEMA_VERSION

@@ -31,7 +31,7 @@ class Layout(NamedTuple):
         return self.folder / "work"
 
     def part(self, name: str) -> Path:
-        """The rows of a chunk."""
+        """The rows of a chunk, before their checksum is known; see `cellcrawl.sweeps.parts`."""
         return self.rows / f"{name}.parquet"
 
     def kept(self, name: str) -> Path:

@@ -1,9 +1,15 @@
-"""Rows as Parquet files, each written under a temporary name and renamed."""
+"""Rows as Parquet files, each written under a temporary name and renamed.
+
+The name of a file ends in the checksum of its content: ``sweep-0a1b2c3d4e5f.crc-89abcdef.parquet``.
+Files without were written by 0.1.0.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import os
+import re
+import zlib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, Final
@@ -40,6 +46,7 @@ COLUMNS: Final = (
     "code",
 )
 SUFFIX: Final = ".parquet"
+_SUM: Final = re.compile(r"\.crc-([0-9a-f]{8})\.parquet$")
 FAILED: Final = "failed"
 KILLED: Final = "killed"
 NOT_RUN: Final = (FAILED, KILLED)
@@ -91,13 +98,23 @@ def _replacing(path: Path) -> Iterator[BinaryIO]:
             yield file
             file.flush()
             os.fsync(file.fileno())
-        temporary.replace(path)
+        found = zlib.crc32(temporary.read_bytes())
+        temporary.replace(path.with_name(f"{path.stem}.crc-{found:08x}{SUFFIX}"))
     except BaseException as error:
         with contextlib.suppress(OSError):
             temporary.unlink(missing_ok=True)
         if isinstance(error, OSError) and not isinstance(error, StorageError):
             raise cannot_write(path, error) from None
         raise
+
+
+def find_part(path: Path) -> Path | None:
+    """Return the file written as ``path``, its checksum in its name; None if there is none.
+
+    A chunk that was made twice, as after a kill, may have left two that hold the same runs.
+    """
+    found = sorted(path.parent.glob(f"{path.stem}.crc-*{SUFFIX}"))
+    return found[0] if found else (path if path.exists() else None)
 
 
 def read_part(path: Path, columns: Sequence[str] | None = None) -> pa.Table:
@@ -112,15 +129,22 @@ def read_part(path: Path, columns: Sequence[str] | None = None) -> pa.Table:
     import pyarrow.parquet as parquet
 
     try:
-        with parquet.ParquetFile(path) as file:
+        content = path.read_bytes()
+        wanted = _SUM.search(path.name)
+        if wanted is not None and zlib.crc32(content) != int(wanted.group(1), 16):
+            raise _damaged(path, "its content is not what its checksum says")
+        with parquet.ParquetFile(pa.BufferReader(content)) as file:
             return file.read(columns=None if columns is None else list(columns))
-    except FileNotFoundError:
+    except (FileNotFoundError, StorageError):
         raise
-    except (OSError, pa.ArrowException) as error:
-        reason = " ".join(str(error).split())[:150]
-        raise StorageError(
-            f"{path} is damaged ({reason}): delete it, and the sweep makes its runs again"
-        ) from None
+    except (OSError, KeyError, pa.ArrowException) as error:
+        raise _damaged(path, " ".join(str(error).split())[:150]) from None
+
+
+def _damaged(path: Path, reason: str) -> StorageError:
+    return StorageError(
+        f"{path} is damaged ({reason}): delete it, and the sweep makes its runs again"
+    )
 
 
 def cannot_write(path: Path, error: OSError) -> StorageError:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import json
 import os
 import uuid
@@ -11,17 +12,25 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from cellcrawl.errors import InputError, StorageError
-from cellcrawl.locks import try_lock
+from cellcrawl.locks import is_locked, locked
 from cellcrawl.sweeps.grid import Grid
 from cellcrawl.sweeps.identity import code_version
 from cellcrawl.sweeps.journal import read_journal
 from cellcrawl.sweeps.layout import Layout
-from cellcrawl.sweeps.parts import NOT_RUN, SUFFIX, cannot_write, merge_parts, read_part, write_part
+from cellcrawl.sweeps.parts import (
+    NOT_RUN,
+    SUFFIX,
+    cannot_write,
+    find_part,
+    merge_parts,
+    read_part,
+    write_part,
+)
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-MANIFEST_SCHEMA: Final = 1
+MANIFEST_SCHEMA: Final = 2  # 1, of version 0.1.0, has no checksum
 _MANY_PARTS = 8
 KEEP: Final = ("rows", "tracks", "fields")
 
@@ -53,17 +62,20 @@ class SweepStore:
         StorageError
             If the manifest is damaged, or written by a newer version.
         """
-        path = self.layout.manifest
+        path, schema = self.layout.manifest, 0
         if not path.exists():
             raise InputError(f"there is no sweep in {self.folder}: it has no {path.name}")
         try:
             found = json.loads(path.read_text("utf-8"))
             schema = int(found["schema"])
-            assert {"grid", "digest", "keep", "code", "runs"} <= set(found)
-        except (OSError, ValueError, KeyError, TypeError, AssertionError) as error:
-            raise StorageError(
-                f"{path} is damaged ({type(error).__name__}): restore it, or give another output"
-            ) from None
+            told = found.pop("checksum", None)
+            known = {"grid", "digest", "keep", "code", "runs"} <= set(found)
+            whole = known and (checksum(found) == told if schema > 1 else told is None)
+            reason = "its content is not what its checksum says"
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            whole, reason = False, type(error).__name__
+        if not whole and not schema > MANIFEST_SCHEMA:
+            raise StorageError(f"{path} is damaged ({reason}): restore it, or give another output")
         if schema > MANIFEST_SCHEMA:
             raise StorageError(
                 f"{path} was written by a newer cellcrawl (schema {schema}, this one reads up to "
@@ -120,7 +132,8 @@ class SweepStore:
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             self.layout.work.mkdir(exist_ok=True)
-            temporary.write_text(json.dumps(manifest, indent=1) + "\n", "utf-8")
+            sealed = {**manifest, "checksum": checksum(manifest)}
+            temporary.write_text(json.dumps(sealed, indent=1) + "\n", "utf-8")
             temporary.replace(path)
         except OSError as error:
             with contextlib.suppress(OSError):
@@ -182,7 +195,7 @@ class SweepStore:
         path = self.layout.journal(name)
         entries = read_journal(path)
         rows = entries.rows if rows_count else []
-        if rows and not self.layout.part(name).exists():
+        if rows and find_part(self.layout.part(name)) is None:
             write_part(self.layout.part(name), rows)
         path.unlink(missing_ok=True)
         return len(rows), dict(entries.unfinished)
@@ -194,13 +207,12 @@ class SweepStore:
         """
         for path in sorted(self.layout.work.glob("*.jsonl")):
             driver = path.stem.rpartition("-")[0]
-            if driver == own or not self._is_held(driver):
+            if driver == own or not is_locked(self.layout.lock(driver)):
                 self.recover(path.stem, rows_count=rows_count)
         for path in self.layout.work.glob(f"halt-{own}-*"):
             path.unlink(missing_ok=True)
 
-    @contextlib.contextmanager
-    def locked(self, name: str) -> Iterator[None]:
+    def locked(self, name: str) -> contextlib.AbstractContextManager[None]:
         """Hold the lock of a driver; the system lets go of it when the process dies.
 
         Raises
@@ -208,32 +220,19 @@ class SweepStore:
         InputError
             If another process holds it.
         """
-        path = self.layout.lock(name)
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            file = path.open("a")
-        except OSError as error:
-            raise cannot_write(path, error) from None
-        with file:
-            if not try_lock(file):
-                raise InputError(
-                    f"another process is at work on {self.folder} ({path.name} is held): wait for "
-                    "it, or stop it"
-                )
-            yield
+        return locked(self.layout.lock(name), self.folder)
 
     def is_locked(self) -> bool:
         """Whether a driver is at work on the folder."""
-        return any(self._is_held(path.stem) for path in self.layout.work.glob("*.lock"))
-
-    def _is_held(self, name: str) -> bool:
-        try:
-            with self.layout.lock(name).open("r") as file:
-                return not try_lock(file)
-        except FileNotFoundError:
-            return False
+        return any(is_locked(path) for path in self.layout.work.glob("*.lock"))
 
 
 def new_name(driver: str) -> str:
     """Return a name for files that no other driver gives."""
     return f"{driver}-{uuid.uuid4().hex[:12]}"
+
+
+def checksum(manifest: dict[str, Any]) -> str:
+    """Return a hash of what a folder says of itself."""
+    content = json.dumps(manifest, sort_keys=True).encode()
+    return hashlib.blake2b(content, digest_size=16).hexdigest()
