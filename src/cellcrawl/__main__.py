@@ -1,5 +1,5 @@
 """`python -m cellcrawl`."""
 
-from cellcrawl.command_line import main
+from cellcrawl.start import main
 
 main()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import errno
 from collections.abc import Iterable
 
 
@@ -26,15 +27,32 @@ class OutlineChangedWarning(UserWarning):
     """An outline was changed so that the model can hold it; the message says how."""
 
 
+def what_would_help(error: OSError, reason: str = "") -> str:
+    """Return when a write that failed can succeed: "once there is room" only for a full disk.
+
+    ``reason`` is the system's word for it, where ``error`` has no number.
+    """
+    full = (
+        error.errno in (errno.ENOSPC, getattr(errno, "EDQUOT", None))
+        or "space" in reason
+        or "quota" in reason
+    )
+    return "once there is room" if full else "once it can be written"
+
+
 def nearest_name(name: object, known: Iterable[str]) -> str:
     """Return ``did you mean 'x'?`` for a misspelt name, or the list of what exists.
 
     Case does not count: ``d`` is nearest to ``D``.
     """
     known = sorted(known)
+    close = close_name(name, known)
+    return f"did you mean {close!r}?" if close else f"known names: {', '.join(known)}"
+
+
+def close_name(name: object, known: Iterable[str]) -> str | None:
+    """Return the one of ``known`` that a misspelt name is close to, None if there is none."""
     plain = {word.casefold(): word for word in known}
     text = name.casefold() if isinstance(name, str) else ""
-    close = [plain[word] for word in difflib.get_close_matches(text[:80], plain, n=1, cutoff=0.5)]
-    if close:
-        return f"did you mean {close[0]!r}?"
-    return f"known names: {', '.join(known)}"
+    close = difflib.get_close_matches(text[:80], plain, n=1, cutoff=0.5)
+    return plain[close[0]] if close else None

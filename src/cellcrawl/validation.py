@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from cellcrawl.errors import InputError, nearest_name
+from cellcrawl.errors import InputError, close_name, nearest_name
 
 
 def real_number(
@@ -16,6 +16,7 @@ def real_number(
 ) -> float:
     """Return ``value`` as a finite float from low (or above it) to high, or raise `InputError`."""
     allowed = f"a number {_interval(low, high, open_low)} {unit}".rstrip()
+    value = plain_number(value)
     number = _as_float(name, value, allowed)
     if not (math.isfinite(number) and low <= number <= high) or (open_low and number == low):
         raise InputError(f"{name} = {shown(value)} is out of range: it must be {allowed}")
@@ -27,7 +28,8 @@ def whole_number(name: str, value: Any, low: int, high: int | None = None) -> in
     allowed = f"a whole number of at least {low}"
     if high is not None:
         allowed = f"a whole number from {low} to {high}"
-    if not _is_real(value):
+    value = plain_number(value)
+    if not is_real(value):
         raise InputError(f"{name} = {shown(value)} has the wrong type: it must be {allowed}")
     whole = int(value) if isinstance(value, (int, np.integer)) or math.isfinite(value) else None
     if whole is None or whole != value or whole < low or (high is not None and whole > high):
@@ -39,7 +41,8 @@ def one_of(name: str, value: Any, allowed: Iterable[str]) -> str:
     """Return ``value`` if it is one of the ``allowed`` words, or raise `InputError`."""
     words = list(allowed)
     if not isinstance(value, str) or value not in words:
-        hint = f" ({nearest_name(value, words)})" if isinstance(value, str) else ""
+        near = close_name(value, words)
+        hint = f" (did you mean {near!r}?)" if near else ""
         choices = ", ".join(repr(word) for word in words)
         raise InputError(f"{name} = {shown(value)} is not known: it must be one of {choices}{hint}")
     return str(value)
@@ -56,7 +59,7 @@ def real_array(name: str, value: Any, shape: tuple[int | None, ...] | None) -> n
         wanted = f"shape ({', '.join(sizes)})"
     try:
         given = np.asarray(value)
-    except (TypeError, ValueError, OverflowError):
+    except Exception:  # an object of anybody's may raise anything
         given = np.asarray(None)
     if given.dtype.kind not in "iuf":
         raise InputError(f"{name} must be an array of numbers of {wanted}")
@@ -91,8 +94,12 @@ def without_masked(*columns: Any) -> tuple[Any, ...]:
 def known_names(what: str, given: Iterable[Any], known: Iterable[str]) -> None:
     """Raise `InputError` for the first of ``given`` that is not in ``known``."""
     known = list(known)
+    try:
+        given = list(given)
+    except Exception:
+        raise InputError(f"{what}: names must be a list of text, not {shown(given)}") from None
     for name in given:
-        if name not in known:
+        if not isinstance(name, str) or name not in known:
             raise InputError(f"{what} has no {shown(name)}: {nearest_name(name, known)}")
 
 
@@ -103,7 +110,7 @@ def table(what: str, value: Any) -> Mapping[str, Any]:
     return value
 
 
-def shown(value: Any) -> str:
+def shown(value: Any, longest: int = 60) -> str:
     """Return ``value`` as short text on one line, whatever it is."""
     if isinstance(value, np.generic):
         value = value.item()
@@ -111,17 +118,30 @@ def shown(value: Any) -> str:
         text = " ".join(repr(value).split())
     except Exception:  # a whole number of thousands of digits, or a broken __repr__
         text = f"<{type(value).__name__}>"
-    return text if len(text) <= 60 else text[:57] + "..."
+    return text if len(text) <= longest else text[: longest - 3] + "..."
 
 
-def _is_real(value: Any) -> bool:
+def plain_number(value: Any) -> Any:
+    """Return the number or flag in one of NumPy's or xarray's boxes, anything else as it is."""
+    if isinstance(value, np.generic) or (
+        type(value).__module__.partition(".")[0] in ("numpy", "xarray")
+        and getattr(value, "ndim", None) == 0
+    ):
+        dtype = getattr(value, "dtype", None)
+        if dtype is not None and dtype.kind in "biuf":
+            return value.item()
+    return value
+
+
+def is_real(value: Any) -> bool:
+    """Whether ``value`` is a real number: Python's or NumPy's, no flag and no span of time."""
     if isinstance(value, (bool, np.bool_, np.timedelta64)):
         return False
     return isinstance(value, (int, float, np.integer, np.floating))
 
 
 def _as_float(name: str, value: Any, allowed: str) -> float:
-    if not _is_real(value):
+    if not is_real(value):
         raise InputError(f"{name} = {shown(value)} has the wrong type: it must be {allowed}")
     try:
         return float(value)

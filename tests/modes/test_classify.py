@@ -190,7 +190,7 @@ def test_a_bad_track_is_refused_in_one_line(track, said):
 def test_a_bad_radius_or_run_is_refused_in_one_line():
     with pytest.raises(cc.InputError, match="cell_radius = 0"):
         cc.classify_track(*straight_track(), cell_radius=0)
-    with pytest.raises(cc.InputError, match="a run is an xarray Dataset, not int"):
+    with pytest.raises(cc.InputError, match="dataset must be xarray's Dataset, not 3"):
         cc.classify(3)
     with pytest.raises(cc.InputError, match="5 records in time: at least 12 records needed"):
         cc.classify(straight(records=5))

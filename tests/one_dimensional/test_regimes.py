@@ -234,7 +234,7 @@ def test_an_anchored_still_cell_starts_to_take_turns_at_a_hopf_point():
         (lambda: od.phase_diagram(P, r_on=[1, 2], zeta_1=[1, 2], starts=[]), "starts is empty"),
         (lambda: od.phase_diagram(P, r_on=[1, 2], zeta_1=[1, 2], t_end=0.1), "t_end = 0.1"),
         (lambda: od.boundaries(P, "wave", r_on=[1, 2], zeta_1=[1, 2]), "which = 'wave'"),
-        (lambda: od.regime(P), "no run of two edges"),
+        (lambda: od.regime(P), "must be xarray's Dataset"),
         (lambda: od.regime(od.simulate_two_edges(P, 0.1)), "eight are needed"),
         (lambda: od.regime(od.simulate_two_edges(P, 1.0), threshold=2.0), "threshold = 2"),
     ],

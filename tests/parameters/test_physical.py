@@ -268,3 +268,13 @@ def test_without_pint_a_quantity_names_the_extra(monkeypatch):
     monkeypatch.setitem(sys.modules, "pint", None)
     with pytest.raises(ImportError, match=r"cellcrawl\[units\]"):
         cell().quantity("radius")
+
+
+def test_the_usual_cell_is_the_usual_cell():
+    assert cell().dimensionless() == cc.Parameters()
+
+
+def test_a_length_in_micrometres_is_the_same_cell():
+    measured = cell(radius=10 * units.um)
+    assert measured == cell(radius=10e-6)
+    assert measured.dimensionless() == cc.Parameters()

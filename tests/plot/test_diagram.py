@@ -142,7 +142,7 @@ def test_what_cannot_be_drawn_is_told_in_one_line(swept, tmp_path, pretending):
         cc.plot.diagram(swept, size=0)
     with pytest.raises(cc.InputError, match="did you mean 'speed'"):
         cc.plot.measure_map(swept, "sped")
-    with pytest.raises(cc.InputError, match="needs a Sweep"):
+    with pytest.raises(cc.InputError, match="sweep must be a Sweep"):
         cc.plot.diagram(tmp_path)
 
 

@@ -187,7 +187,7 @@ def test_panels_of_the_summary_share_their_sides_and_their_labels_stay_clear():
         (lambda: cc.plot.kymographs(RUN, origin="rear"), "must be one of 'front', 'material'"),
         (lambda: cc.plot.time_series(RUN, ["tensoin"]), "did you mean 'tension'"),
         (lambda: cc.plot.time_series(RUN, []), "quantities is empty"),
-        (lambda: cc.plot.summary(7), "not int"),
+        (lambda: cc.plot.summary(7), "dataset must be xarray.s Dataset, not 7"),
     ],
 )
 def test_mistakes_are_refused_in_one_line(draw, said):

@@ -62,9 +62,9 @@ def test_a_colour_map_given_to_a_picture_wins():
     ("options", "said"),
     [
         ({"colormap": "vridis"}, "did you mean 'viridis'"),
-        ({"colormap": 3}, "name of a colour map"),
+        ({"colormap": 3}, "colormap must be text, not 3"),
         ({"width": 0.1}, "width = 0.1 is out of range"),
-        ({"font_size": "big"}, "font_size = 'big' has the wrong type"),
+        ({"font_size": "big"}, "font_size must be a number, not 'big'"),
         ({"rc": {"font.sise": 3}}, "did you mean 'font.size'"),
         ({"rc": {"font.size": "vast"}}, "font.size = 'vast'"),
         ({"rc": 7}, "rc must be a table"),

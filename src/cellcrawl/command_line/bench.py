@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from cellcrawl.command_line.options import say
+from cellcrawl.command_line.options import make_folder, save_picture, say
 from cellcrawl.validation import one_of
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ _KINDS = (
 def bench(
     kind: str, quick: bool, calibrate: bool, output: Path | None, references: Path | None
 ) -> int:
-    r"""Measure accuracy and speed on this machine.
+    """Measure accuracy and speed on this machine.
 
     \b
     KIND is one of
@@ -77,6 +77,8 @@ def bench(
     from cellcrawl.bench.references import References
 
     one_of("KIND", kind, _KINDS)
+    if output is not None:
+        make_folder(output)  # before measuring for minutes
     if calibrate:
         one_of("KIND with --calibrate", kind, ("modes",))
     known = References(references)
@@ -89,9 +91,9 @@ def bench(
     if output is not None:
         machine.write(output / f"{kind}.json", result.data)
         if result.figure is not None:
-            result.figure.savefig(output / f"{kind}.png", dpi=160)
+            save_picture(result.figure, output / f"{kind}.png", 160)
         for name, figure in (result.more or {}).items():
-            figure.savefig(output / f"{name}.png", dpi=160)
+            save_picture(figure, output / f"{name}.png", 160)
         say(f"results  {output}")
     return 0
 
@@ -228,4 +230,6 @@ def _times(ratio: float) -> str:
 
 
 def _cell(value: Any) -> str:
-    return f"{value:.3g}" if isinstance(value, float) else str(value)
+    if isinstance(value, float):
+        return "-" if math.isnan(value) else f"{value:.3g}"
+    return str(value)

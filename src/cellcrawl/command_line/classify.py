@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from cellcrawl.command_line.main import USER_MISTAKE, complain
 from cellcrawl.command_line.many_tracks import classify_all
-from cellcrawl.command_line.options import say, wants_progress
+from cellcrawl.command_line.options import cannot_write, say, wants_progress
 from cellcrawl.command_line.track_files import read_tracks_of, reading_options
-from cellcrawl.errors import InputError, StorageError
+from cellcrawl.errors import InputError
+from cellcrawl.validation import shown
 
 if TYPE_CHECKING:
     from cellcrawl.modes import Classification
@@ -61,14 +63,15 @@ def classify(
     remove_drift: bool,
     output: Path | None,
     **reading: Any,
-) -> None:
+) -> int:
     """Name the motility mode of each FILE: gliding, rotational, zigzag, other, stationary or torn.
 
     A FILE is a run (.nc, .zarr) or holds tracks: a table whose columns have the usual names, or
     what TrackMate, trackpy, btrack, napari, CellProfiler, celltrackR, ImageJ and the Cell Tracking
     Challenge write. It is known by its content; what was recognised and left out is said. Of
     several tracks the mode of most is named too. A track or a file that cannot be named is listed
-    with the reason and stops none of the others.
+    with the reason and stops none of the others; after a file that could not be read the exit code
+    is 2.
 
     \b
     Examples
@@ -79,6 +82,8 @@ def classify(
     """
     from cellcrawl.modes import combine
 
+    if output is not None and output.suffix.lower() != ".csv":
+        raise InputError(f"--output {shown(str(output))}: the table is written as .csv")
     rows: list[_Row] = []
     failures: list[str] = []
     for file in files:
@@ -101,10 +106,11 @@ def classify(
         agreed = f"mixed, most {verdict.majority}" if verdict.mode == "mixed" else verdict.mode
         say(f"together: {agreed} (confidence {verdict.confidence:.2f}): {counts}")
     for failure in failures:
-        click.echo(f"cellcrawl: left out {failure}", err=True)
+        complain(f"left out {failure}")
     if output is not None:
         _write(output, rows)
         say(f"table    {output}")
+    return USER_MISTAKE if failures else 0
 
 
 def _rows(
@@ -198,8 +204,9 @@ def _write(output: Path, rows: list[_Row]) -> None:
                 table.writerow({"file": row.file, "track": row.track, **seen, "reason": row.reason})
         partial.replace(output)
     except OSError as error:
-        partial.unlink(missing_ok=True)
-        raise StorageError(f"cannot write {output}: {error.strerror or error}") from None
+        with contextlib.suppress(OSError):
+            partial.unlink(missing_ok=True)
+        raise cannot_write(output, error) from None
 
 
 def _cell(value: float, form: str) -> str:

@@ -11,7 +11,7 @@ import click
 
 from cellcrawl.command_line.folders import run_in, sweep_in
 from cellcrawl.command_line.look import Look, limits_from, look_options, numbers_from
-from cellcrawl.command_line.options import say, wants_progress
+from cellcrawl.command_line.options import save_picture, say, wants_progress
 from cellcrawl.errors import InputError
 from cellcrawl.validation import one_of
 
@@ -145,11 +145,7 @@ def _save(drawn: Any, target: Path, kind: str, dpi: int) -> None:
     figure = getattr(drawn, "figure", drawn)
     if target.is_dir():
         target = target / f"{kind}.png"
-    try:
-        figure.savefig(target, dpi=dpi)
-    except (OSError, ValueError) as error:
-        raise InputError(f"cannot write {target}: {error}") from None
-    say(f"picture  {target}")
+    save_picture(figure, target, dpi)
 
 
 @click.command()

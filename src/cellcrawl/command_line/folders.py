@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cellcrawl.arguments import file_path
 from cellcrawl.errors import InputError
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ def run_in(path: Path) -> Path:
     InputError
         For a folder without a run, or with several of which none is ``run.nc``.
     """
+    file_path("FILE", path)
     if not path.is_dir() or path.suffix in (*_SUFFIXES, ".part"):
         return path
     names = {
@@ -43,4 +45,5 @@ def sweep_in(path: Path) -> Sweep | None:
     from cellcrawl.sweeps import open_sweep
     from cellcrawl.sweeps.layout import Layout
 
+    file_path("FILE", path)
     return open_sweep(path) if Layout(path).manifest.is_file() else None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import importlib
 import sys
+import warnings
 from collections.abc import Sequence
 from typing import Any, Final
 
@@ -55,8 +56,9 @@ class _LazyGroup(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         if args and args[0] not in _COMMANDS and not args[0].startswith("-"):
             from cellcrawl.errors import nearest_name
+            from cellcrawl.validation import shown
 
-            ctx.fail(f"no command {args[0]!r}: {nearest_name(args[0], _COMMANDS)}")
+            ctx.fail(f"no command {shown(args[0])}: {nearest_name(args[0], _COMMANDS)}")
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -101,6 +103,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     0: ended as the model allows. 2: a mistake in what was asked. 3: a run that failed. 130: Ctrl-C,
     with what was computed kept.
     """
+    warnings.showwarning = _one_line
     gc.set_threshold(_OBJECTS_BETWEEN_COLLECTIONS, 20, 100)
     code = run(arguments)
     gc.freeze()  # the process ends: a last search for garbage would cost a fifth of a warm start
@@ -118,25 +121,32 @@ def run(arguments: Sequence[str] | None = None) -> int:
             standalone_mode=False,
         )
     except click.exceptions.Abort:
+        complain("stopped")
         return CANCELLED
     except click.ClickException as error:
         context = getattr(error, "ctx", None)
         path = context.command_path if context is not None else "cellcrawl"
-        _complain(f"{error.format_message()} (see {path} --help)")
+        complain(f"{error.format_message()} (see {path} --help)")
         return USER_MISTAKE
     except InputError as error:
-        _complain(str(error))
+        complain(str(error))
         return USER_MISTAKE
     except CellcrawlError as error:
-        _complain(str(error))
+        complain(str(error))
         return RUN_FAILED
     except KeyboardInterrupt:
-        _complain("stopped")
+        complain("stopped")
         return CANCELLED
     except BrokenPipeError:
         return 0
     return result if isinstance(result, int) else 0
 
 
-def _complain(message: str) -> None:
+def _one_line(message: Warning | str, *_: Any, **__: Any) -> None:
+    """Print a warning as the terminal should have it: without the place in our code."""
+    complain(f"note: {message}")
+
+
+def complain(message: str) -> None:
+    """Print a line of complaint."""
     click.echo(f"cellcrawl: {message}", err=True)

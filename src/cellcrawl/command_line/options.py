@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
+from cellcrawl.arguments import file_path
+from cellcrawl.errors import InputError, StorageError
 from cellcrawl.parameters import DESCRIPTIONS, ELASTICITIES, Parameters
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -45,3 +48,47 @@ def wants_progress() -> bool:
 def say(message: str) -> None:
     """Print a line of the result."""
     click.echo(message)
+
+
+def near(path: Path) -> Path:
+    """Return a path below the present folder as seen from there, another one as it is."""
+    here = Path.cwd()
+    return path.relative_to(here) if path.is_relative_to(here) else path
+
+
+def save_picture(figure: Any, path: Path, dpi: int) -> None:
+    """Write a picture and say so.
+
+    Raises
+    ------
+    InputError
+        For a suffix that is no kind of picture.
+    StorageError
+        If it cannot be written.
+    """
+    file_path("--output", path)
+    kinds = figure.canvas.get_supported_filetypes()
+    if path.suffix[1:].lower() not in kinds:
+        raise InputError(f"cannot write {path}: a picture's name ends in .png, .pdf or .svg")
+    try:
+        figure.savefig(path, dpi=dpi)
+    except (OSError, ValueError) as error:
+        raise cannot_write(path, error) from None
+    say(f"picture  {path}")
+
+
+def make_folder(path: Path) -> None:
+    """Make a folder for results, or raise `StorageError`."""
+    file_path("--output", path)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StorageError(
+            f"cannot make the folder {path}: {error.strerror or error}; give another --output"
+        ) from None
+
+
+def cannot_write(path: Path, error: Exception) -> StorageError:
+    """Return the error to raise when a result cannot be written."""
+    reason = getattr(error, "strerror", None) or " ".join(str(error).split())
+    return StorageError(f"cannot write {path}: {reason}; give another --output")

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from cellcrawl.command_line.main import CANCELLED, RUN_FAILED
-from cellcrawl.command_line.options import say
+from cellcrawl.command_line.options import near, say
 from cellcrawl.simulation.dataset import decode_attribute
 from cellcrawl.simulation.events import MODEL_ENDINGS
 
@@ -93,7 +93,7 @@ def report_sweep(found: Any) -> None:
         say(f"modes    {_counted(status.modes)}")
     for reason, count in found.failures().items():
         say(f"failed   {count}: {reason}")
-    say(f"rows     {found.path / 'rows'}")
+    say(f"rows     {near(found.path / 'rows')}")
 
 
 def _refined(found: Any, status: Any) -> str:

@@ -8,7 +8,13 @@ from typing import Any
 import click
 
 from cellcrawl.command_line.config import Configuration, read_configuration
-from cellcrawl.command_line.options import parameter_options, say, wants_progress
+from cellcrawl.command_line.options import (
+    make_folder,
+    parameter_options,
+    save_picture,
+    say,
+    wants_progress,
+)
 from cellcrawl.command_line.report import exit_code, report_run
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import Parameters
@@ -113,10 +119,7 @@ def simulate(
         start = cc.RandomPerturbation(seed=seed)
     cell = Parameters.from_dict({**SHOWN.to_dict(), **given.parameters, **chosen})
     folder = _folder(output, overwrite)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot make the folder {folder}: {error.strerror or error}") from None
+    make_folder(folder)
     data = folder / "run.nc"
     try:
         dataset = cc.simulate(
@@ -138,8 +141,7 @@ def simulate(
         report_run(dataset)
         say(f"data     {data}")
         if picture:
-            cc.plot.summary(dataset).savefig(folder / "summary.png", dpi=200)
-            say(f"picture  {folder / 'summary.png'}")
+            save_picture(cc.plot.summary(dataset), folder / "summary.png", 200)
         if movie and dataset.attrs["status"] != "interrupted":
             cc.movie(dataset, folder / "cell.mp4", progress=wants_progress())
             say(f"movie    {folder / 'cell.mp4'}")

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from cellcrawl.command_line.main import CANCELLED
-from cellcrawl.command_line.options import say, wants_progress
+from cellcrawl.command_line.options import near, save_picture, say, wants_progress
 from cellcrawl.command_line.report import report_sweep
 from cellcrawl.errors import InputError
 
@@ -65,7 +65,7 @@ def sweep(
     retry: bool,
     picture: bool,
 ) -> int:
-    r"""Run every cell of GRID, a TOML file; leave one row a run and a diagram of the modes.
+    """Run every cell of GRID, a TOML file; leave one row a run and a diagram of the modes.
 
     Runs that have a row are not made again: after Ctrl-C, a crash or a full disk the same command
     goes on. With --status and --collect, GRID may also be the folder of results.
@@ -145,7 +145,5 @@ def _finish(found: Any, picture: bool) -> int:
         from cellcrawl import plot
         from cellcrawl.plot.style import figure_of
 
-        path = found.path / _PICTURE
-        figure_of(plot.diagram(found)).savefig(path, dpi=200)
-        say(f"picture  {path}")
+        save_picture(figure_of(plot.diagram(found)), near(found.path / _PICTURE), 200)
     return 0

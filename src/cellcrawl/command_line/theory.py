@@ -10,14 +10,13 @@ import click
 import numpy as np
 
 from cellcrawl.command_line.look import Look, look_options
-from cellcrawl.command_line.options import parameter_options, say
-from cellcrawl.errors import InputError, StorageError
+from cellcrawl.command_line.options import cannot_write, parameter_options, save_picture, say
+from cellcrawl.errors import InputError
 from cellcrawl.parameters import DESCRIPTIONS, Parameters
-from cellcrawl.validation import known_names
+from cellcrawl.validation import known_names, shown
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.figure import Figure
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -92,7 +91,7 @@ def dispersion(
     if output is not None:
         family: dict[str, Any] = dict(varied)
         with look.used():
-            _save(plot.dispersion(cell, k_max=k_max, **family), output, dpi)
+            save_picture(plot.dispersion(cell, k_max=k_max, **family), output, dpi)
 
 
 @click.command()
@@ -149,15 +148,15 @@ def stability(
     _print_map(stability_map)
     if data is not None:
         if data.suffix != ".nc":
-            raise InputError(f"--data {str(data)!r} must end in .nc")
+            raise InputError(f"--data {shown(str(data))} must end in .nc")
         try:
             stability_map.to_netcdf(data, engine="h5netcdf")
         except OSError as error:
-            raise StorageError(f"cannot write {data}: {error.strerror or error}") from None
+            raise cannot_write(data, error) from None
         say(f"data     {data}")
     if output is not None:
         with look.used():
-            _save(figure_of(plot.stability(stability_map)), output, dpi)
+            save_picture(figure_of(plot.stability(stability_map)), output, dpi)
 
 
 def _cell(parameters: dict[str, Any]) -> Parameters:
@@ -173,7 +172,9 @@ def _varied(texts: tuple[str, ...]) -> dict[str, np.ndarray]:
         name, equals, values = text.partition("=")
         name = name.strip().replace("-", "_")
         if not equals:
-            raise InputError(f"--vary {text!r} must be a name and values, as in zeta_1=400,500,600")
+            raise InputError(
+                f"--vary {shown(text)} must be a name and values, as in zeta_1=400,500,600"
+            )
         known_names("--vary", [name], DESCRIPTIONS)
         if name in varied:
             raise InputError(f"--vary has {name} twice")
@@ -198,7 +199,7 @@ def _numbers(what: str, parts: list[str]) -> np.ndarray:
     try:
         return np.array([float(part) for part in parts])
     except ValueError:
-        raise InputError(f"{what} must be numbers, not {','.join(parts)!r}") from None
+        raise InputError(f"{what} must be numbers, not {shown(','.join(parts))}") from None
 
 
 def _print_rates(cell: Parameters, k_max: int) -> None:
@@ -261,11 +262,3 @@ def _print_map(stability_map: xr.Dataset) -> None:
             low_x, low_y = vertices[np.argmin(vertices[:, 1])]
             least = f"{low_y:.4g} at {first} = {low_x:.4g}"
         say(f"{k:>8} {100.0 * grows.mean():>9.1f}% {len(curves):>8}   {least}")
-
-
-def _save(figure: Figure, output: Path, dpi: int) -> None:
-    try:
-        figure.savefig(output, dpi=dpi)
-    except (OSError, ValueError) as error:
-        raise InputError(f"cannot write {output}: {error}") from None
-    say(f"picture  {output}")

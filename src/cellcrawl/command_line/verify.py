@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from cellcrawl.command_line.main import CANCELLED, RUN_FAILED
-from cellcrawl.command_line.options import say
+from cellcrawl.command_line.options import make_folder, say
 
 
 @click.command()
@@ -37,7 +37,7 @@ from cellcrawl.command_line.options import say
 def verify(
     only: tuple[str, ...], full: bool, workers: int, output: Path | None, listed: bool
 ) -> int:
-    r"""Verify the package and the paper's claims: measure them anew and say what holds.
+    """Verify the package and the paper's claims: measure them anew and say what holds.
 
     Prints what was expected and what was measured. "ok" holds; "no" is a claim of the paper that is
     known not to hold and still does not; "FAILS" is anything else, and makes the exit code 3. The
@@ -59,6 +59,8 @@ def verify(
                 if check.part == part:
                     say(f"  {check.name}{' (with --full)' if check.only_in_full else ''}")
         return 0
+    if output is not None:
+        make_folder(output)  # before checking for minutes
     done: list[Outcome] = []
 
     def tell(outcome: Outcome) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from cellcrawl.curve import fourier
 from cellcrawl.curve.crossing import first_crossing
-from cellcrawl.curve.equal_arclength import FEWEST_NODES, Curve
+from cellcrawl.curve.equal_arclength import FEWEST_NODES, MOST_NODES, Curve
 from cellcrawl.errors import InputError
 from cellcrawl.validation import real_array, real_number, whole_number
 
@@ -45,7 +45,7 @@ def from_path(path: np.ndarray, nodes: int) -> tuple[Curve, np.ndarray]:
         For a path that stops, turns back, winds otherwise than once counter-clockwise, or has more
         detail than the nodes can show.
     """
-    whole_number("nodes", nodes, FEWEST_NODES)
+    whole_number("nodes", nodes, FEWEST_NODES, MOST_NODES)
     velocity = fourier.derivative(path, 2.0 * math.pi)
     speed = np.abs(velocity)
     if not speed.min() > 1e-9 * speed.mean():

@@ -15,11 +15,13 @@ from typing import Any
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.curve import fourier
 from cellcrawl.errors import InputError
 from cellcrawl.validation import real_array, real_number, whole_number
 
 FEWEST_NODES = 16
+MOST_NODES = 1_000_000
 _CLOSED = 1e-13  # closure error that rounding leaves
 
 
@@ -158,9 +160,10 @@ class Curve:
         """Return the curve translated by ``shift``, shape (2,)."""
         return dataclasses.replace(self, origin=self.origin + real_array("shift", shift, (2,)))
 
+    @checked
     def resampled(self, nodes: int) -> Curve:
         """Return the same curve on another number of equally spaced nodes, node 0 in place."""
-        whole_number("Curve nodes", nodes, FEWEST_NODES)
+        whole_number("Curve nodes", nodes, FEWEST_NODES, MOST_NODES)
         winding = 2.0 * math.pi * np.arange(self.nodes) / self.nodes
         wobble = fourier.resample(self.theta - winding, nodes)
         theta = wobble + 2.0 * math.pi * np.arange(nodes) / nodes

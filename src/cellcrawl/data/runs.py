@@ -10,7 +10,7 @@ import xarray as xr
 
 from cellcrawl.data.schema import DIMENSIONAL, EDGE_FIELDS, FIELDS, TIME
 from cellcrawl.errors import InputError, nearest_name
-from cellcrawl.validation import real_array
+from cellcrawl.validation import real_array, shown
 
 _SLICE_RECORDS: Final = 512  # looked at together: a run on disk need not fit in memory
 _WIDEST_GAP: Final = 2.0  # spacings between neighbouring nodes ...
@@ -67,7 +67,7 @@ def edge_field(name: Any) -> str:
     """Return ``name`` if it is a field on the edge, or raise `InputError`."""
     if not isinstance(name, str) or name not in EDGE_FIELDS:
         raise InputError(
-            f"there is no field {name!r} on the edge: {nearest_name(name, EDGE_FIELDS)}"
+            f"there is no field {shown(name)} on the edge: {nearest_name(name, EDGE_FIELDS)}"
         )
     return name
 

@@ -43,9 +43,12 @@ class Characteristic(NamedTuple):
 
     @property
     def discriminant(self) -> np.ndarray:
-        """``damping**2 - 4 a restoring``, with less cancellation: below 0, roots are complex."""
+        """``damping**2 - 4 a restoring``, with less cancellation: below 0, roots are complex.
+
+        Squares are products: NumPy's power gives single numbers other last digits than arrays.
+        """
         gap = self.a * self.q - self.stiffness * self.c - self.b
-        discriminant: np.ndarray = gap**2 - 4.0 * self.b * self.stiffness * self.c
+        discriminant: np.ndarray = gap * gap - 4.0 * self.b * self.stiffness * self.c
         return discriminant
 
     @property

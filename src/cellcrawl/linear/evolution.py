@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.linear.theory import base_state
 from cellcrawl.parameters import Parameters
 from cellcrawl.validation import real_array, whole_number
 
 
+@checked
 def evolution(
     parameters: Parameters, k: int, radius: complex, bound_fraction: complex, times: Any
 ) -> tuple[np.ndarray, np.ndarray]:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.linear.characteristic import Characteristic, characteristic, checked_values
 from cellcrawl.linear.theory import growth_rates
@@ -23,6 +24,7 @@ class Mode(NamedTuple):
     """Angular frequency, 0 for a mode that grows without oscillating."""
 
 
+@checked
 def cutoff_wavenumber(parameters: Parameters, **values: Any) -> np.ndarray:
     """Real wavenumber at which the damping changes sign: ``1 <= k < cutoff`` grow, the rest decay.
 
@@ -44,6 +46,7 @@ def cutoff_wavenumber(parameters: Parameters, **values: Any) -> np.ndarray:
     return cutoff(parameters, checked_values("cutoff_wavenumber", values))
 
 
+@checked
 def unstable_modes(parameters: Parameters) -> np.ndarray:
     """Whole wavenumbers that grow, in order; 0 is the breathing mode.
 
@@ -65,6 +68,7 @@ def unstable_modes(parameters: Parameters) -> np.ndarray:
     return np.flatnonzero(margin > 0.0)
 
 
+@checked
 def fastest_mode(parameters: Parameters) -> Mode | None:
     """Return the mode that grows fastest, or None if none grows.
 

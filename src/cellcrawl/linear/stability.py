@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.linear.characteristic import characteristic, two_axes
 from cellcrawl.linear.level_curves import level_curves
@@ -23,6 +24,7 @@ _HIGHEST = 1000
 _MOST = 10_000_000
 
 
+@checked
 def stability_map(
     parameters: Parameters, *, k: Any = (1, 2, 5, 10, 15), **ranges: Any
 ) -> xr.Dataset:
@@ -96,6 +98,7 @@ def stability_map(
     return xr.Dataset(variables, coordinates, attributes)
 
 
+@checked
 def marginal_curves(parameters: Parameters, k: int, **ranges: Any) -> list[np.ndarray]:
     """Curves in the plane of two parameters on which wavenumber ``k`` neither grows nor decays.
 
@@ -126,6 +129,7 @@ def marginal_curves(parameters: Parameters, k: int, **ranges: Any) -> list[np.nd
     )
 
 
+@checked
 def curves_in(stability: xr.Dataset, k: int) -> list[np.ndarray]:
     """Return the marginal curves of ``k`` that a stability map holds, as `marginal_curves` does."""
     first, second = axis_names(stability)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.linear.characteristic import (
     characteristic,
     checked_shapes,
@@ -30,6 +31,7 @@ class BaseState:
     c: float
 
 
+@checked
 def base_state(parameters: Parameters) -> BaseState:
     """Return the resting circle of ``parameters``."""
     p = parameters
@@ -45,6 +47,7 @@ def base_state(parameters: Parameters) -> BaseState:
     )
 
 
+@checked
 def growth_rates(parameters: Parameters, k: Any, **values: Any) -> np.ndarray:
     """Growth rates of wavenumber ``k``, both roots of the characteristic equation.
 
@@ -76,10 +79,11 @@ def growth_rates(parameters: Parameters, k: Any, **values: Any) -> np.ndarray:
     quadratic = characteristic(parameters, k, given)
     half = 0.5 * quadratic.damping / quadratic.a
     product = quadratic.restoring / quadratic.a
-    square = 0.25 * quadratic.discriminant / quadratic.a**2
+    square = 0.25 * quadratic.discriminant / (quadratic.a * quadratic.a)
     return ordered_roots(half, product, square)
 
 
+@checked
 def fastest_decay(parameters: Parameters) -> float:
     """Largest rate at which the breathing mode (k = 0) decays or oscillates."""
     return float(np.abs(growth_rates(parameters, 0)).max())

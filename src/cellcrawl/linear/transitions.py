@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.linear.bracketing import all_roots
 from cellcrawl.linear.characteristic import (
@@ -38,6 +39,7 @@ class Transition(NamedTuple):
     """Whether the pair exists, or at a Hopf point grows, above ``value`` rather than below."""
 
 
+@checked
 def oscillation_onset(parameters: Parameters, k: Any, **ranges: Any) -> list[Transition]:
     """Points at which two real roots meet and turn into a complex pair, or back.
 
@@ -75,6 +77,7 @@ def oscillation_onset(parameters: Parameters, k: Any, **ranges: Any) -> list[Tra
     return [_transition(along, at, low, high, quadratic, "discriminant") for at in found]
 
 
+@checked
 def hopf_points(parameters: Parameters, k: Any, **ranges: Any) -> list[Transition]:
     """Points at which a complex pair crosses the imaginary axis: Hopf points in the usual sense.
 

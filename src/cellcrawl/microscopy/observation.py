@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.microscopy.label_images import outlines_of_labels
 from cellcrawl.microscopy.options import Reading
@@ -78,6 +79,7 @@ class Observation:
         return target
 
 
+@checked
 def observe(
     run: xr.Dataset,
     *,

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.microscopy.cellpose_masks import read_cellpose_masks
 from cellcrawl.microscopy.geff_graphs import read_geff
@@ -41,6 +42,7 @@ _OUTLINES: dict[str, Callable[[Path, Reading], Outlines]] = {
 }
 
 
+@checked
 def read_tracks(
     path: str | PathLike[str],
     *,
@@ -111,6 +113,7 @@ def read_tracks(
     return _OUTLINES[form](file, reading).tracks
 
 
+@checked
 def read_outlines(
     path: str | PathLike[str],
     *,

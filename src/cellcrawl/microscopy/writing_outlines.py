@@ -12,6 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError, StorageError
 from cellcrawl.microscopy.extras import reader
 from cellcrawl.microscopy.outlines import Outline
@@ -27,6 +28,7 @@ OUTLINE_FORMS: Final = (
 """Forms in which `write_outlines` writes."""
 
 
+@checked
 def write_outlines(
     path: str | PathLike[str],
     outlines: Iterable[Outline],

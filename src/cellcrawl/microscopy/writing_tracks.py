@@ -9,6 +9,7 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError, StorageError
 from cellcrawl.microscopy.extras import reader
 from cellcrawl.microscopy.source import Source
@@ -37,6 +38,7 @@ _GEFF_UNITS = {
 }
 
 
+@checked
 def write_tracks(path: str | PathLike[str], tracks: Any, *, form: str | None = None) -> Path:
     """Write tracks, or the path of a run, in the form of a tracking program.
 

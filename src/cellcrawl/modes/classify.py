@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.modes import rule
 from cellcrawl.modes.confidence import trust
 from cellcrawl.modes.evidence import Evidence, gather
@@ -34,6 +35,7 @@ _CUT_SHORT = 0.5  # the confidence that a run which failed can have
 _FAILURES = tuple(set(STATUSES) - {"completed", "fragmented", "interrupted", "running"})
 
 
+@checked
 def classify(dataset: xr.Dataset, *, use_size: bool = True) -> Classification:
     """Name the motility mode of a run.
 
@@ -72,6 +74,7 @@ def classify(dataset: xr.Dataset, *, use_size: bool = True) -> Classification:
     return _ended(found, str(run.attrs.get("status", "completed")), float(track.t[-1]))
 
 
+@checked
 def classify_track(
     t: Any, x: Any, y: Any, *, cell_radius: float | None = None, status: str = "completed"
 ) -> Classification:
@@ -114,6 +117,7 @@ def classify_track(
     return _ended(_classify(track, cell_radius), status, float(track.t[-1]))
 
 
+@checked
 def is_long_enough(dataset: xr.Dataset) -> bool:
     """Whether a run of the model lasts `SHORTEST_RUN` and has the records to show its mode."""
     times, one = dataset["time"].values, units_of(dataset).one("time")

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.modes.result import MODES, Classification
 
@@ -33,6 +34,7 @@ class Verdict:
     counts: dict[str, int]
 
 
+@checked
 def combine(results: Iterable[Classification]) -> Verdict:
     """Return the mode of several runs: the one they agree on, or "mixed".
 

@@ -6,6 +6,8 @@ import math
 from dataclasses import asdict, dataclass
 from typing import Any, Final
 
+from cellcrawl.records import EqualWithNaN
+
 MODES: Final = ("gliding", "rotational", "zigzag", "other", "stationary", "fragmented")
 """Modes of a single run; a set of runs can also be "mixed"."""
 
@@ -15,8 +17,8 @@ DETAILS: Final = ("", STEADY_SPIN)
 one does, but within its own outline: the paper calls it "other"."""
 
 
-@dataclass(frozen=True)
-class Measures:
+@dataclass(frozen=True, eq=False)
+class Measures(EqualWithNaN):
     """What the rule looks at; angles in rad, times and lengths in the units of the track.
 
     Attributes
@@ -89,8 +91,8 @@ class Measures:
     heading_error: float = math.nan
 
 
-@dataclass(frozen=True)
-class Classification:
+@dataclass(frozen=True, eq=False)
+class Classification(EqualWithNaN):
     """The mode of one run, and how sure.
 
     Attributes

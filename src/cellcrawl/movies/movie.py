@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked, file_path
 from cellcrawl.errors import InputError, StorageError
 from cellcrawl.movies.notebook import MovieFile
 from cellcrawl.movies.scene import Scene
@@ -19,13 +20,14 @@ from cellcrawl.movies.writers import encoder, write_gif, write_mp4
 from cellcrawl.observables.inputs import edge_field
 from cellcrawl.plot.inputs import drawable
 from cellcrawl.plot.scales import Limits
-from cellcrawl.validation import one_of, real_number, whole_number
+from cellcrawl.validation import one_of, real_number, shown, whole_number
 
 VIEWS = ("follow", "path")
 _USUAL_SIZE = {".mp4": (960, 720), ".gif": (480, 360)}
 _SMALLEST, _LARGEST = 64, 4096
 
 
+@checked
 def movie(
     dataset: xr.Dataset,
     path: str | Path,
@@ -121,12 +123,9 @@ def _frames(scene: Scene, count: int, progress: bool) -> Iterator[np.ndarray]:
 
 
 def _target(path: Any) -> Path:
-    try:
-        target = Path(path)
-    except TypeError:
-        raise InputError(f"a movie's path is text or a Path, not {type(path).__name__}") from None
+    target = file_path("a movie's path", path)
     if target.suffix.lower() not in _USUAL_SIZE:
-        raise InputError(f"{str(target)!r}: a movie ends in .mp4 or .gif")
+        raise InputError(f"{shown(str(target))}: a movie ends in .mp4 or .gif")
     if target.is_dir():
         raise InputError(f"{target} is a folder: give the name of a file in it")
     if not target.parent.is_dir():
@@ -160,4 +159,5 @@ def _renamed_when_complete(target: Path) -> Iterator[Path]:
             reason = error.strerror or str(error)
             raise StorageError(f"the movie {target} cannot be written: {reason}") from None
     finally:
-        unfinished.unlink(missing_ok=True)
+        with suppress(OSError):  # where nothing can be written, nothing was
+            unfinished.unlink(missing_ok=True)

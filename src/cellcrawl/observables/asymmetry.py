@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.observables.inputs import edge_field, records_with
 from cellcrawl.observables.motion import heading
 
 
+@checked
 def front_rear_asymmetry(dataset: xr.Dataset, field: str = "bound_fraction") -> xr.DataArray:
     """Return how much more of a field the front half of the edge has than the rear half.
 
@@ -41,6 +43,7 @@ def front_rear_asymmetry(dataset: xr.Dataset, field: str = "bound_fraction") -> 
     return _asymmetry(dataset, field, 0.0, "front-rear", "front_rear_asymmetry")
 
 
+@checked
 def left_right_asymmetry(dataset: xr.Dataset, field: str = "bound_fraction") -> xr.DataArray:
     """Return how much more of a field the left half of the edge has than the right half.
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.observables.track import Track, as_track
 from cellcrawl.validation import real_number
@@ -17,6 +18,7 @@ _MOST_FRAMES = 20  # per record
 _LEAST_POWER = 0.1  # flatter or falling curves have no power law within a bin
 
 
+@checked
 def mean_squared_displacement(
     run: Any, x: Any = None, y: Any = None, *, longest: float | None = None
 ) -> xr.DataArray:

@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.observables.track import Track, as_track
 from cellcrawl.validation import real_number
 
 
+@checked
 def straightness(run: Any, x: Any = None, y: Any = None) -> float:
     """Return net distance over path length: 1 for a straight line, 0 for a closed path.
 
@@ -44,6 +46,7 @@ def straightness(run: Any, x: Any = None, y: Any = None) -> float:
     return net / path if path > 0.0 else math.nan
 
 
+@checked
 def mean_distance(run: Any, x: Any = None, y: Any = None, *, after: float | None = None) -> float:
     """Return x_c: the time mean of the distance from the first position.
 

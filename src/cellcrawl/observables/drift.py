@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.microscopy.track import Track, Tracks
 
@@ -59,6 +60,7 @@ class Drift:
         )
 
 
+@checked
 def shared_drift(tracks: Iterable[Track]) -> Drift:
     """Find the motion that tracks share.
 
@@ -102,6 +104,7 @@ def shared_drift(tracks: Iterable[Track]) -> Drift:
     return Drift(times, path[0], path[1], share, math.exp(-score), count)
 
 
+@checked
 def without_drift(tracks: Iterable[Track], drift: Drift | None = None) -> Tracks:
     """Return tracks without the motion they share.
 

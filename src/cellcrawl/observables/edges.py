@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.microscopy.outlines import Outline, Outlines
 from cellcrawl.microscopy.polygons import area_of, centroid_of, equally_spaced
@@ -22,6 +23,7 @@ _STAIRCASE = 0.9  # part of the sides that follow the axes where an outline goes
 _FEWEST_PIXELS, _MOST_PIXELS = 24, 100_000
 
 
+@checked
 def edge_series(
     outlines: Any, t: Any = None, *, tolerance: float | None = None, nodes: int = NODES
 ) -> xr.Dataset:

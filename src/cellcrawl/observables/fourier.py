@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.observables.inputs import EDGE_FIELDS, records_with
 from cellcrawl.validation import one_of, real_array
@@ -14,6 +15,7 @@ from cellcrawl.validation import one_of, real_array
 _OF_THE_ANGLE = (*(name for name in EDGE_FIELDS if name not in ("x", "y", "theta")), "radius")
 
 
+@checked
 def fourier_amplitude(dataset: xr.Dataset, field: str, k: Any) -> xr.DataArray:
     """Return Fourier amplitudes of a field over the polar angle about the origin.
 
@@ -50,6 +52,8 @@ def fourier_amplitude(dataset: xr.Dataset, field: str, k: Any) -> xr.DataArray:
     names = ["x", "y", "theta", "length"] + ([] if field == "radius" else [field])
     run = records_with(dataset, *names)
     wavenumbers = np.atleast_1d(real_array("k", k, None))
+    if wavenumbers.ndim > 1 or not wavenumbers.size:
+        raise InputError("k must be one whole number or a list of them")
     highest = run.sizes["node"] // 2
     if np.any(
         (wavenumbers != np.round(wavenumbers)) | (wavenumbers < 1) | (wavenumbers >= highest)

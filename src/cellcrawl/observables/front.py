@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.observables.inputs import records_with
 from cellcrawl.observables.motion import centroid_velocity, heading
 
 
+@checked
 def front_position(dataset: xr.Dataset) -> xr.DataArray:
     """Return where the ray from the centroid along its velocity leaves the cell.
 

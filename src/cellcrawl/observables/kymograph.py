@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.observables.front import front_position
 from cellcrawl.observables.inputs import edge_field, records_with
@@ -13,6 +14,7 @@ from cellcrawl.validation import one_of
 ORIGINS = ("front", "material")
 
 
+@checked
 def kymograph(
     dataset: xr.Dataset, field: str = "bound_fraction", origin: str = "front"
 ) -> xr.DataArray:

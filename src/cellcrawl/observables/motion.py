@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.observables.inputs import records_with
 from cellcrawl.observables.track import Track, as_track
 from cellcrawl.simulation.units import units_of
@@ -17,6 +18,7 @@ AT_REST = 1e-6
 _ROUNDING = 1e-12
 
 
+@checked
 def centroid_velocity(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
     """Return the velocity of the centroid.
 
@@ -71,6 +73,7 @@ def centroid_velocity(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
     )
 
 
+@checked
 def speed(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
     """Return the speed of the area centroid.
 
@@ -103,6 +106,7 @@ def speed(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
     )
 
 
+@checked
 def heading(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
     """Return the direction in which the centroid moves, as a continuous angle.
 
@@ -140,6 +144,7 @@ def heading(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
     return xr.DataArray(angle, {"time": measured["time"]}, ("time",), "heading", attributes)
 
 
+@checked
 def turning_rate(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
     """Return how fast the heading turns, positive counter-clockwise (to the left).
 

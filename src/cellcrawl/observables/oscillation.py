@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.observables.inputs import records_with
 from cellcrawl.observables.smoothing import smooth
 from cellcrawl.observables.track import Track, as_track
 from cellcrawl.observables.turns import Swings, crossing_times, swings_of
+from cellcrawl.records import EqualWithNaN
 from cellcrawl.validation import real_array, real_number, without_masked
 
 _TRANSIENT = 0.25  # part of the time left out at the beginning unless said otherwise
@@ -20,8 +22,8 @@ _HYSTERESIS = 0.3  # of the range: smaller ups and downs are ripples
 _FEWEST = 8
 
 
-@dataclass(frozen=True)
-class Oscillation:
+@dataclass(frozen=True, eq=False)
+class Oscillation(EqualWithNaN):
     """Period and amplitude of a signal that goes up and down.
 
     Attributes
@@ -43,6 +45,7 @@ class Oscillation:
     cycles: float
 
 
+@checked
 def oscillation(t: Any, values: Any, *, after: float | None = None) -> Oscillation:
     """Return period and amplitude of a signal.
 
@@ -88,6 +91,7 @@ def oscillation(t: Any, values: Any, *, after: float | None = None) -> Oscillati
     return _periods(times, series, whole)
 
 
+@checked
 def tension_oscillation(dataset: xr.Dataset, *, after: float | None = None) -> Oscillation:
     """Return period and amplitude of the membrane tension.
 
@@ -116,6 +120,7 @@ def tension_oscillation(dataset: xr.Dataset, *, after: float | None = None) -> O
     return oscillation(run["time"].values, run["tension"].values, after=after)
 
 
+@checked
 def lateral_oscillation(
     run: Any, x: Any = None, y: Any = None, *, after: float | None = None
 ) -> Oscillation:

@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.observables.smoothing import smooth
 from cellcrawl.observables.track import as_track
+from cellcrawl.records import EqualWithNaN
 from cellcrawl.validation import one_of
 
 KINDS = ("direction", "velocity")
@@ -18,8 +20,8 @@ _FEWEST = 8
 _FORGOTTEN = math.exp(-1.0)
 
 
-@dataclass(frozen=True)
-class Persistence:
+@dataclass(frozen=True, eq=False)
+class Persistence(EqualWithNaN):
     """How long a cell keeps its direction.
 
     Attributes
@@ -37,6 +39,7 @@ class Persistence:
     speed: float
 
 
+@checked
 def persistence(run: Any, x: Any = None, y: Any = None, *, kind: str = "direction") -> Persistence:
     """Return persistence time and length, from the correlation of the motion with itself later.
 
@@ -80,6 +83,7 @@ def persistence(run: Any, x: Any = None, y: Any = None, *, kind: str = "directio
     return Persistence(time, time * speed if speed > 0.0 else 0.0, speed)
 
 
+@checked
 def velocity_correlation(
     run: Any, x: Any = None, y: Any = None, *, kind: str = "direction"
 ) -> xr.DataArray:

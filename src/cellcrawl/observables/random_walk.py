@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from cellcrawl._compile import kernel
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.observables.noise import position_noise
 from cellcrawl.observables.records import sound
@@ -90,6 +91,7 @@ class PersistentWalk:
         return total
 
 
+@checked
 def persistent_walk(
     run: Any, x: Any = None, y: Any = None, *, exposure: float = 0.0
 ) -> PersistentWalk:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.observables.inputs import records_with
 
 
+@checked
 def circularity(dataset: xr.Dataset) -> xr.DataArray:
     """Return ``4 pi A / L**2`` at each record: 1 for a circle, less for anything else.
 
@@ -36,6 +38,7 @@ def circularity(dataset: xr.Dataset) -> xr.DataArray:
     return measured.rename("circularity").assign_attrs(long_name="circularity", units="1")
 
 
+@checked
 def aspect_ratio(dataset: xr.Dataset) -> xr.DataArray:
     """Return length over width of the ellipse with the same second moments of area.
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.microscopy.outlines import Outlines
 from cellcrawl.microscopy.polygons import area_of, centroid_of, equally_spaced
@@ -81,6 +82,7 @@ class ShapeModes:
         return scores
 
 
+@checked
 def shape_modes(
     *series: Any,
     modes: int = 6,

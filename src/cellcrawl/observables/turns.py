@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.observables.smoothing import smooth
 from cellcrawl.observables.track import as_track
 from cellcrawl.validation import real_number
@@ -20,6 +21,7 @@ _AT_REST = 0.05  # of the median of the higher speeds
 _TURNING = 0.5  # a cell turns while it turns faster than this fraction of its root mean square
 
 
+@checked
 def turning_events(
     run: Any, x: Any = None, y: Any = None, *, smallest: float = SMALLEST_TURN
 ) -> xr.Dataset:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellcrawl._compile import kernel
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import EDGE_ROWS, Parameters
 from cellcrawl.physics.force_balance import balance
@@ -52,6 +53,7 @@ class Anchoring:
 FREE = Anchoring()
 
 
+@checked
 def length_stiffness(parameters: Parameters) -> float:
     """Return ``pi G``, the rate of the tension with the length of the cell.
 
@@ -61,6 +63,7 @@ def length_stiffness(parameters: Parameters) -> float:
     return math.pi * parameters.tension_rate
 
 
+@checked
 def still_tension(parameters: Parameters) -> float:
     """Return the tension at which a straight edge stands still, ``r log r = v_p``."""
     return parameters.sigma_bar * (1.0 + parameters.h)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.linear.characteristic import two_axes
 from cellcrawl.linear.level_curves import level_curves
@@ -29,6 +30,7 @@ _GRID = (60, 200)
 BOUNDARIES = ("symmetric", "antisymmetric", "crawling")
 
 
+@checked
 def phase_diagram(
     parameters: Parameters,
     *,
@@ -123,6 +125,7 @@ def phase_diagram(
     return xr.Dataset(variables, coordinates, attributes)
 
 
+@checked
 def boundaries(
     parameters: Parameters, which: str, *, anchoring: Anchoring = FREE, **ranges: Any
 ) -> list[np.ndarray]:

@@ -9,6 +9,7 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.one_dimensional import runge_kutta
 from cellcrawl.one_dimensional.cell import checked_cell, still_tension, velocity_and_friction
@@ -43,6 +44,7 @@ _ENDINGS: Final = {
 }
 
 
+@checked
 def simulate_flat_edge(
     parameters: Parameters,
     t_end: float = 10.0,

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.one_dimensional.flat_theory import flat_growth_rates, flat_mode, uniform_states
 from cellcrawl.parameters import Parameters
@@ -71,6 +72,7 @@ class FlatNoise:
         real_number("amplitude", self.amplitude, 0.0, 0.5)
         whole_number("waves", self.waves, 1, _MOST_WAVES)
 
+    @checked
     def fields(self, setting: FlatSetting) -> Fields:
         rng = np.random.default_rng(self.seed)
         n = np.full(setting.s.size, setting.bound_fraction)
@@ -105,6 +107,7 @@ class FlatWave:
         if whole_number("direction", self.direction, -1, 1) == 0:
             raise InputError("direction = 0 is out of range: it must be 1 or -1")
 
+    @checked
     def fields(self, setting: FlatSetting) -> Fields:
         k = 2.0 * math.pi * self.waves / setting.length
         rate = flat_growth_rates(
@@ -136,6 +139,7 @@ class StuckPatch:
     def __post_init__(self) -> None:
         real_number("part", self.part, 0.0, 1.0, open_low=True)
 
+    @checked
     def fields(self, setting: FlatSetting) -> Fields:
         states = uniform_states(setting.parameters, setting.tension)
         if states.size != 3:
@@ -166,6 +170,7 @@ class FlatFields:
     bound_fraction: Any
     height: Any = None
 
+    @checked
     def fields(self, setting: FlatSetting) -> Fields:
         nodes = setting.s.size
         n = real_array("bound_fraction", self.bound_fraction, (nodes,))

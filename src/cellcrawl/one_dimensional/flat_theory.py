@@ -8,6 +8,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from cellcrawl._compile import kernel
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.linear.bracketing import all_roots
 from cellcrawl.linear.characteristic import characteristic, checked_wavenumbers
@@ -33,6 +34,7 @@ class FlatMode(NamedTuple):
     off_rate: complex
 
 
+@checked
 def uniform_states(parameters: Parameters, tension: float) -> np.ndarray:
     """Return the off-rates at which a uniform flat edge can be at a tension, lowest first.
 
@@ -71,6 +73,7 @@ def uniform_states(parameters: Parameters, tension: float) -> np.ndarray:
     return states
 
 
+@checked
 def flat_growth_rates(
     parameters: Parameters,
     k: Any,
@@ -138,6 +141,7 @@ def flat_mode(parameters: Parameters, k: float, off_rate: float, rate: complex) 
     return FlatMode(rate, 1.0 + 0.0j, complex(height), complex(change))
 
 
+@checked
 def front_speed(parameters: Parameters, tension: float) -> float:
     """Speed at which the stuck state invades the slipping one along a flat edge without curvature.
 

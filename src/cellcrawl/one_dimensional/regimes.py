@@ -7,6 +7,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.validation import real_number, shown
 
@@ -41,6 +42,7 @@ FAILED: Final = Regime("failed", np.nan, np.nan, False, False, np.nan)
 """That of a run that could not go on."""
 
 
+@checked
 def regime(
     dataset: xr.Dataset, *, after: float | None = None, threshold: float = THRESHOLD
 ) -> Regime:

@@ -12,6 +12,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.linear.bracketing import all_roots
 from cellcrawl.linear.characteristic import (
     Characteristic,
@@ -53,6 +54,7 @@ class CrawlingState(NamedTuple):
         return self.growth_rate < 0.0
 
 
+@checked
 def growth_rates(
     parameters: Parameters, symmetry: str, *, anchoring: Anchoring = FREE, **values: Any
 ) -> np.ndarray:
@@ -126,6 +128,7 @@ def _with(flat: Characteristic, stiffness: np.ndarray) -> Characteristic:
     return flat._replace(stiffness=np.asarray(stiffness))
 
 
+@checked
 def crawling_states(parameters: Parameters, *, anchoring: Anchoring = FREE) -> list[CrawlingState]:
     """Return the states in which the cell crawls steadily, slowest first.
 

@@ -9,6 +9,7 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.one_dimensional import drive
 from cellcrawl.one_dimensional.cell import (
@@ -49,6 +50,7 @@ _ENDINGS = {
 }
 
 
+@checked
 def simulate_two_edges(
     parameters: Parameters,
     t_end: float = 60.0,

@@ -7,10 +7,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.validation import real_number, shown
 
 
+@checked
 def wave_velocity(dataset: xr.Dataset) -> xr.Dataset:
     """Velocity of the pattern of bound fraction along a flat edge.
 
@@ -71,6 +73,7 @@ def wave_velocity(dataset: xr.Dataset) -> xr.Dataset:
     )
 
 
+@checked
 def stuck_length(dataset: xr.Dataset, level: float | None = None) -> xr.DataArray:
     """Length of a flat edge whose bound fraction is above a level, to better than a node.
 

@@ -10,6 +10,7 @@ from typing import Any, Self
 
 import tomli_w
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError, StorageError
 from cellcrawl.validation import known_names, shown, table
 
@@ -49,6 +50,7 @@ class NamedFields:
         """Build from a mapping of field names to values."""
         return cls(**{str(name): value for name, value in table(cls.__name__, values).items()})
 
+    @checked
     def to_toml(self, path: str | Path | None = None) -> str:
         """Return the fields as TOML; with ``path``, write them there too."""
         text = tomli_w.dumps(self.to_dict())
@@ -57,7 +59,7 @@ class NamedFields:
                 Path(path).write_text(text, encoding="utf-8")
             except OSError as error:
                 reason = error.strerror or error
-                raise StorageError(f"cannot write {str(path)!r}: {reason}") from None
+                raise StorageError(f"cannot write {shown(str(path), 300)}: {reason}") from None
         return text
 
     @classmethod
@@ -71,7 +73,7 @@ def read_toml(source: str | Path) -> dict[str, Any]:
     if not isinstance(source, (str, Path)):
         raise InputError(f"TOML comes from a path or text, not {shown(source)}")
     is_file = isinstance(source, Path) or (source.endswith(".toml") and "\n" not in source)
-    name = repr(str(source)) if is_file else "this text (a file's name ends in .toml)"
+    name = shown(str(source), 300) if is_file else "this text (a file's name ends in .toml)"
     try:
         text = Path(source).read_text("utf-8-sig") if is_file else str(source)
         return tomllib.loads(text)

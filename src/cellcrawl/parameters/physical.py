@@ -7,10 +7,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.parameters.dimensionless import DESCRIPTIONS, ELASTICITIES, Parameters
 from cellcrawl.parameters.named import NamedFields
-from cellcrawl.parameters.quantities import magnitude_in, quantity
+from cellcrawl.parameters.quantities import as_written, magnitude_in, quantity
 from cellcrawl.parameters.scales import LARGEST, SAME, SMALLEST, Scales
 from cellcrawl.parameters.temperature import REFERENCE, ActivationEnergies, factors, kelvin
 from cellcrawl.validation import one_of, real_number
@@ -143,6 +144,7 @@ class PhysicalParameters(NamedFields):
         values = {name: self._ratio(name, ratio) for name, ratio in _RATIOS.items()}
         return Parameters(**values, elasticity=self.elasticity)
 
+    @checked
     def at_temperature(
         self,
         temperature: Any,
@@ -203,6 +205,7 @@ class PhysicalParameters(NamedFields):
         return self.replace(**{name: getattr(self, name) * times for name, times in warm.items()})
 
     @classmethod
+    @checked
     def from_dimensionless(
         cls, parameters: Parameters, scales: Scales | None = None
     ) -> PhysicalParameters:
@@ -245,6 +248,7 @@ class PhysicalParameters(NamedFields):
             elasticity=p.elasticity,
         )
 
+    @checked
     def quantity(self, name: str) -> Any:
         """Return one value as a pint quantity."""
         one_of("name", name, QUANTITIES)
@@ -252,7 +256,7 @@ class PhysicalParameters(NamedFields):
 
     def _ratio(self, name: str, ratio: _Ratio) -> float:
         """Return a dimensionless parameter; out of range, name the physical values behind it."""
-        value = ratio.of(self)
+        value: float = as_written(ratio.of(self))
         low, high = DESCRIPTIONS[name].low, DESCRIPTIONS[name].high
         nearest = min(max(value, low), high)
         if abs(value - nearest) <= _ROUNDING * nearest:

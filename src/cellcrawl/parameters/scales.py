@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.parameters.named import NamedFields
 from cellcrawl.parameters.quantities import magnitude_in, quantity
-from cellcrawl.validation import one_of, real_number
+from cellcrawl.validation import one_of, real_number, shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -103,6 +104,7 @@ class Scales(NamedFields):
         """Scale ``zeta_0 v_beta / 2`` of the membrane tension, in N/m."""
         return 0.5 * self.friction
 
+    @checked
     def to_physical(self, value: Any, kind: str, *, as_quantity: bool = False) -> Any:
         """Return a dimensionless ``value`` in SI.
 
@@ -121,6 +123,7 @@ class Scales(NamedFields):
             result = result.assign_attrs({**value.attrs, "units": chosen.unit})
         return quantity(result, chosen.unit) if as_quantity else result
 
+    @checked
     def to_dimensionless(self, value: Any, kind: str) -> Any:
         """Return ``value``, in SI or a pint quantity, without dimension.
 
@@ -162,7 +165,9 @@ class Scales(NamedFields):
             if label in _SAME_IN_SI:
                 continue
             if label not in _BY_LABEL:
-                raise InputError(f"{name!r} is in {label!r}: scales do not know that unit")
+                raise InputError(
+                    f"{shown(name)} is in {shown(label)}: scales do not know that unit"
+                )
             kind = _BY_LABEL[label]
             attributes = {**variable.attrs, "units": kind.unit}
             converted[name] = (variable.dims, variable.data * kind.size(self), attributes)

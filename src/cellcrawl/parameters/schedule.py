@@ -7,6 +7,7 @@ import itertools
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.parameters.dimensionless import DESCRIPTIONS, Parameters
 from cellcrawl.validation import known_names, real_number, shown, table
@@ -44,10 +45,12 @@ class Schedule:
         times = {time for points in self._points.values() for time, _ in points}
         self._breaks = tuple(sorted(times))
 
+    @checked
     def at(self, parameters: Parameters, time: float) -> Parameters:
         """Return ``parameters`` with the scheduled values that hold from ``time`` on."""
         return self._evaluate(parameters, time, bisect.bisect_right)
 
+    @checked
     def before(self, parameters: Parameters, time: float) -> Parameters:
         """Return ``parameters`` with the scheduled values that hold up to ``time``."""
         return self._evaluate(parameters, time, bisect.bisect_left)
@@ -57,11 +60,13 @@ class Schedule:
         """Times at which a value jumps or a ramp begins or ends, in order."""
         return self._breaks
 
+    @checked
     def next_break(self, time: float) -> float:
         """Return the first break after ``time``, infinity if there is none."""
         later = bisect.bisect_right(self._breaks, time)
         return self._breaks[later] if later < len(self._breaks) else float("inf")
 
+    @checked
     def varies(self, start: float, end: float) -> bool:
         """Whether any value ramps between the breaks around ``start`` and ``end``."""
         return any(

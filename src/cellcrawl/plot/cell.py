@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
+from cellcrawl.arguments import checked
 from cellcrawl.observables import centroid_velocity
 from cellcrawl.observables.inputs import edge_field
 from cellcrawl.plot.colouring import Colouring, colour_bar, colouring
@@ -42,6 +43,7 @@ _ARROW = 4.0  # length of the velocity's arrow, in units of time
 _IN_A_ROW = 6
 
 
+@checked
 def cell(
     dataset: xr.Dataset,
     time: float | None = None,
@@ -104,6 +106,7 @@ def cell(
     return axes
 
 
+@checked
 def snapshots(
     dataset: xr.Dataset,
     times: Any,

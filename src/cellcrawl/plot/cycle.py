@@ -9,6 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.observables import centroid_velocity
 from cellcrawl.observables.inputs import edge_field
@@ -33,6 +34,7 @@ _GAP = 0.25  # between two cells, in R_0
 _ARROW = 3.5  # length of the velocity's arrow, in units of time
 
 
+@checked
 def cycle(
     dataset: xr.Dataset,
     start: float,

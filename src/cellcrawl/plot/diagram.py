@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.markers import MarkerStyle
 from matplotlib.path import Path
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.plot.along import draw_measure, draw_modes
 from cellcrawl.plot.colouring import plain
@@ -35,6 +36,7 @@ _KEY_WIDTH = 72.0  # points
 _ARC = 24  # vertices of a full pie
 
 
+@checked
 def diagram(
     sweep: Sweep,
     x: str | None = None,
@@ -99,6 +101,7 @@ def diagram(
     return axes
 
 
+@checked
 def measure_map(
     sweep: Sweep,
     measure: str,
@@ -173,8 +176,6 @@ def measure_map(
 
 
 def _rows(sweep: Sweep) -> Any:
-    if not isinstance(sweep, Sweep):
-        raise InputError(f"a diagram needs a Sweep (see open_sweep), not {type(sweep).__name__}")
     table = sweep.table()
     if len(table) == 0:
         raise InputError(f"{sweep.path} has no rows yet: there is nothing to draw")

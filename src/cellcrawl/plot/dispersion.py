@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.linear import cutoff_wavenumber, growth_rates, hopf_points, oscillation_onset
 from cellcrawl.linear.characteristic import checked_values
@@ -43,6 +44,7 @@ _ONSET: dict[str, Any] = {"marker": "o", "markersize": 3.5, "markerfacecolor": "
 _HOPF: dict[str, Any] = {"marker": "D", "markersize": 3.0}
 
 
+@checked
 def dispersion(
     parameters: Parameters,
     *,

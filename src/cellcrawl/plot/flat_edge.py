@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.one_dimensional.waves import check_flat_edge
 from cellcrawl.plot.colouring import colour_bar, colouring
@@ -25,6 +26,7 @@ _SCALE_OF: Final = {
 }
 
 
+@checked
 def flat_edge(
     dataset: xr.Dataset,
     field: str = "bound_fraction",

@@ -10,6 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.linear import evolution
 from cellcrawl.observables import fourier_amplitude
@@ -25,6 +26,7 @@ _SYMBOLS = {"radius": "$|R_k|$ ($R_0$)", "bound_fraction": "$|n_k|$"}
 _NAMES = {"radius": "radius", "bound_fraction": "bound fraction"}
 
 
+@checked
 def growth(
     dataset: xr.Dataset,
     k: Sequence[int] = (1, 2, 5, 10, 15, 20),

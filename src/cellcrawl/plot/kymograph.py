@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
 from cellcrawl import observables
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.observables.inputs import edge_field
 from cellcrawl.plot.colouring import colour_bar, colouring
@@ -25,6 +26,7 @@ _PANELS = ("bound_fraction", "off_rate", "friction", "curvature")
 _AXIS_LABELS = {"front": "$s/L$ from front", "material": "$s/L$"}
 
 
+@checked
 def kymograph(
     dataset: xr.Dataset,
     field: str = "bound_fraction",
@@ -77,6 +79,7 @@ def kymograph(
     return axes
 
 
+@checked
 def kymographs(
     dataset: xr.Dataset,
     fields: Sequence[str] = _PANELS,

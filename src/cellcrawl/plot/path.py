@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.observables import speed
 from cellcrawl.observables.inputs import edge_field
@@ -30,6 +31,7 @@ _APART = 0.45  # in R_0: between two times that are written
 _NEAREST = 0.4  # of `every`: nearer contours than this are not added at the end
 
 
+@checked
 def path(
     dataset: xr.Dataset,
     every: float | None = None,
@@ -92,6 +94,7 @@ def path(
     return axes
 
 
+@checked
 def paths(
     runs: Mapping[str, xr.Dataset],
     every: float | None = None,

@@ -20,6 +20,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.plot.notebook import png_of, shown_by_pyplot
 from cellcrawl.validation import known_names, real_number, shown, table
@@ -86,6 +87,7 @@ _NOTHING: Final = _Chosen()
 _chosen: ContextVar[_Chosen] = ContextVar("chosen", default=_NOTHING)
 
 
+@checked
 @contextmanager
 def styled(
     rc: Mapping[str, Any] | None = None,

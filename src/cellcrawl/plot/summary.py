@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from cellcrawl.arguments import checked
 from cellcrawl.modes import classify, is_long_enough
 from cellcrawl.observables import front_position
 from cellcrawl.observables.inputs import edge_field
@@ -37,6 +38,7 @@ _WIDE = 1.9
 _MOST_VALUES = 4  # of a parameter that changes, in the title
 
 
+@checked
 def summary(
     dataset: xr.Dataset,
     every: float | None = None,

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cellcrawl import observables
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.plot.inputs import drawable
 from cellcrawl.plot.labels import SERIES, series_label, time_label, time_unit
@@ -27,6 +28,7 @@ _COLOURS = {
 }
 
 
+@checked
 def time_series(
     dataset: xr.Dataset | Mapping[str, xr.Dataset],
     quantities: Sequence[str] = ("tension", "speed", "length", "area", "circularity"),

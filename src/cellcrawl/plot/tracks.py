@@ -8,6 +8,7 @@ from typing import Any
 import xarray as xr
 from matplotlib.figure import Figure
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.microscopy.outlines import Outlines
 from cellcrawl.microscopy.track import Track, Tracks
@@ -30,6 +31,7 @@ _EXAMPLES = 8
 _ACROSS = 4
 
 
+@checked
 def tracks(
     tracks: Any, results: Results | None = None, *, title: str = "", examples: int = _EXAMPLES
 ) -> Figure:
@@ -110,6 +112,7 @@ def tracks(
     return figure
 
 
+@checked
 def compare_tracks(
     series: Mapping[str, Any], results: Mapping[str, Results] | None = None
 ) -> Figure:

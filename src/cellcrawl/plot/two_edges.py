@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.one_dimensional.cell import Anchoring
 from cellcrawl.one_dimensional.diagram import BOUNDARIES, boundaries
@@ -55,6 +56,7 @@ _START_TITLES = {
 }
 
 
+@checked
 def two_edges(dataset: xr.Dataset, *, axes: Sequence[Axes] | None = None) -> Figure:
     """Draw where the cell on a line is, the bound fractions of its edges, and the tension.
 
@@ -114,6 +116,7 @@ def _draw(run: xr.Dataset, panels: list[Axes]) -> None:
         panel.spines[["top", "right"]].set_visible(False)
 
 
+@checked
 def regimes(diagram: xr.Dataset, *, lines: bool = True) -> Figure:
     """Draw the regimes of two edges over two parameters, one panel for each start.
 

@@ -8,17 +8,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError, nearest_name
-from cellcrawl.parameters import CONSTANT, Conditions, Parameters, Schedule
+from cellcrawl.parameters import CONSTANT, DESCRIPTIONS, Conditions, Parameters, Schedule
 from cellcrawl.simulation.dataset import SCHEMA_VERSION, package_version
 from cellcrawl.simulation.events import crossing_at
+from cellcrawl.simulation.following import check_records
 from cellcrawl.solvers import SOLVERS, Solver
-from cellcrawl.starts import RandomPerturbation, Start
-from cellcrawl.validation import real_number
+from cellcrawl.starts import Eigenmode, FromOutline, PerturbedCircle, RandomPerturbation, Start
+from cellcrawl.validation import one_of, real_number, shown, table
 
 DEFAULT_SOLVER = "adaptive"
+_MOST_STEPS = 1e10
+_PARAMETERS = (*DESCRIPTIONS, "elasticity")
+_STARTS = (RandomPerturbation, Eigenmode, PerturbedCircle, FromOutline)
 
 
+@checked
 @dataclass(frozen=True, kw_only=True)
 class RunDescription:
     """One run: parameters, start, schedule, times and solver; immutable.
@@ -47,9 +53,6 @@ class RunDescription:
     options: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        _expect(self.parameters, Parameters, "parameters")
-        _expect(self.schedule, Schedule, "schedule")
-        _expect(self.start, Start, "start")
         scheme = solver_named(self.solver)
         checked = {
             "t_end": real_number("t_end", self.t_end, 0.0, 1e9),
@@ -58,7 +61,10 @@ class RunDescription:
         }
         for name, value in checked.items():
             object.__setattr__(self, name, value)
-        _check_options(scheme, self.options)
+        _check_options(scheme, table("options", self.options))
+        check_records(self.t_end, self.save_every)
+        if "dt" in self.options:
+            _check_steps(self.t_end, self.options["dt"])
 
     @property
     def conditions(self) -> Conditions:
@@ -113,18 +119,29 @@ def _usual_options(solver: str) -> dict[str, Any]:
 
 def solver_named(name: Any) -> type[Solver]:
     """Return the solver class of that name, or raise `InputError`."""
-    if name not in SOLVERS:
-        raise InputError(f"there is no solver {name!r}: {nearest_name(name, SOLVERS)}")
-    return SOLVERS[name]
+    return SOLVERS[one_of("solver", name, SOLVERS)]
 
 
-def _expect(value: Any, kind: Any, name: str) -> None:
-    if not isinstance(value, kind):
-        raise InputError(f"{name} must be a {kind.__name__}, not {type(value).__name__}")
+def _check_steps(t_end: float, dt: Any) -> None:
+    step = real_number("dt", dt, 0.0, 1e9, open_low=True)
+    if t_end / step > _MOST_STEPS:
+        raise InputError(
+            f"dt = {step:g} makes {t_end / step:.3g} steps up to t_end = {t_end:g}: at most "
+            f"{_MOST_STEPS:.0e} can be made"
+        )
 
 
 def _check_options(scheme: type[Solver], options: Mapping[str, Any]) -> None:
     for name in options:
-        if name not in scheme.OPTIONS:
-            hint = nearest_name(name, scheme.OPTIONS)
-            raise InputError(f"solver {scheme.name!r} has no option {name!r}: {hint}")
+        if name in scheme.OPTIONS:
+            continue
+        if name in _PARAMETERS:
+            example = f"simulate(Parameters({name}=...))"
+            raise InputError(f"{name} is a parameter of the cell: give it as in {example}")
+        for kind in _STARTS:
+            if name in kind.__dataclass_fields__:
+                example = f"start={kind.__name__}({name}=...)"
+                raise InputError(f"{name} belongs to the start: give it as in {example}")
+        fields = [field for field in RunDescription.__dataclass_fields__ if field != "options"]
+        hint = nearest_name(name, {*scheme.OPTIONS, *fields})
+        raise InputError(f"solver {scheme.name!r} has no option {shown(name)}: {hint}")

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
 from cellcrawl.curve import first_crossing
+from cellcrawl.errors import InputError
 from cellcrawl.simulation.events import crossing_at, locate_crossing
 from cellcrawl.simulation.interruption import Interruption
 from cellcrawl.simulation.progress import Progress
@@ -19,6 +20,7 @@ Kept = TypeVar("Kept")
 _CHECK_EVERY = 0.1  # longest time between two looks for a self-crossing
 _CHECKS_PER_CHECKPOINT = 10  # a crossing is traced back from the last checkpoint
 _SAME_TIME = 1e-9  # relative
+_MOST_RECORDS = 1e7
 
 
 @dataclass
@@ -37,6 +39,7 @@ class Follower(Generic[Kept]):
 
     def follow(self, t_end: float) -> Kept:
         """Go on to ``t_end`` or to whatever ends the run first; return what was recorded."""
+        check_records(t_end, self.save_every)
         self._began = clock.monotonic()
         with self.interruption as interruption, self.progress:
             ended, closing = self._follow(t_end, interruption)
@@ -128,6 +131,16 @@ class Follower(Generic[Kept]):
             "records_on_grid": self.records,
             "diagnostics": {**self.solver.diagnostics(), "wall_time": round(spent, 3)},
         }
+
+
+def check_records(t_end: float, save_every: float) -> None:
+    """Raise `InputError` if a run to ``t_end`` would have more records than can be kept."""
+    records = t_end / save_every
+    if records > _MOST_RECORDS:
+        raise InputError(
+            f"save_every = {save_every:g} makes {records:.3g} records up to t_end = {t_end:g}: at "
+            f"most {_MOST_RECORDS:.0e} can be kept, with save_every = {t_end / _MOST_RECORDS:g}"
+        )
 
 
 def same_time(a: float, b: float) -> bool:

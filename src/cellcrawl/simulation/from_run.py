@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.curve import Curve, fourier
 from cellcrawl.data import is_dimensionless, records_with
 from cellcrawl.errors import InputError
@@ -21,6 +22,7 @@ _NEEDED = ("x", "y", "theta", "length", "bound_fraction", "tension", "area")
 _SMALLEST, _LARGEST = 0.03, 300.0  # areas of a cell that is in the model's units
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class FromRun:
     """A state of a saved run as the first state of another; immutable.
@@ -36,6 +38,7 @@ class FromRun:
     run: xr.Dataset | str | Path
     record: int = -1
 
+    @checked
     def state(self, parameters: Parameters, nodes: int) -> CellState:
         """Return the saved state on ``nodes`` nodes; its tension is kept."""
         frame = self.saved_record()

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.data import FIELDS, SCHEMA_VERSION, decode_attribute
 from cellcrawl.errors import CellcrawlError, InputError, StorageError
 from cellcrawl.parameters import CONSTANT, Conditions, Parameters, Schedule
@@ -25,6 +26,7 @@ from cellcrawl.validation import real_number
 _SAME = 1e-9  # a restored state gives its last record to rounding
 
 
+@checked
 def simulate(
     parameters: Parameters | None = None,
     t_end: float = 100.0,
@@ -137,6 +139,7 @@ def follow(
     return follower.follow(description.t_end)
 
 
+@checked
 def resume(path: str | Path, t_end: float, *, progress: bool = False) -> xr.Dataset:
     """Go on with a saved run, to the same bits as if it had never stopped.
 

@@ -21,8 +21,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.data import VARIABLES, checked_attributes
-from cellcrawl.errors import InputError, MissingExtraError, StorageError
+from cellcrawl.errors import InputError, MissingExtraError, StorageError, what_would_help
 from cellcrawl.locks import locked
 from cellcrawl.simulation import blocks, formats
 from cellcrawl.simulation.checksums import damaged
@@ -140,7 +141,8 @@ class RunStore:
                 temporary.unlink(missing_ok=True)
             raise StorageError(
                 f"cannot write to {self.part}: {_reason(error)}; what was saved before "
-                f"stays readable, and `cellcrawl resume {self.path}` goes on once there is room"
+                f"stays readable, and `cellcrawl resume {self.path}` goes on "
+                f"{what_would_help(error, _reason(error))}"
             ) from None
 
     def finish(
@@ -363,6 +365,7 @@ def _without_first(attributes: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in attributes.items() if name != _FIRST}
 
 
+@checked
 def open_run(path: str | Path) -> xr.Dataset:
     """Open a saved run, finished or not.
 

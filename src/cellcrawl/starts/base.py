@@ -7,12 +7,14 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.curve import Curve
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import Parameters
 from cellcrawl.validation import real_array, real_number
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class CellState:
     """The state of a cell: everything the model needs to go on; immutable.

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.linear import growth_rates
 from cellcrawl.linear.eigenmodes import Amplitudes, linear_mode, second_order
@@ -61,10 +62,12 @@ class Eigenmode:
         object.__setattr__(self, "branch", one_of("branch", self.branch, BRANCHES))
         object.__setattr__(self, "carrier", one_of("carrier", self.carrier, CARRIERS))
 
+    @checked
     def growth_rate(self, parameters: Parameters) -> complex:
         """Return the growth rate of this mode."""
         return complex(growth_rates(parameters, self.k)[BRANCHES.index(self.branch)])
 
+    @checked
     def state(self, parameters: Parameters, nodes: int) -> CellState:
         """Return the first state on ``nodes`` nodes, node 0 at the crest of the carrier.
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.curve import Curve, from_path
 from cellcrawl.curve.construct import polar_path
 from cellcrawl.errors import InputError
@@ -51,6 +52,7 @@ class PerturbedCircle:
         for name in ("radius", "bound_fraction"):
             object.__setattr__(self, name, _checked_modes(name, getattr(self, name)))
 
+    @checked
     def state(self, parameters: Parameters, nodes: int) -> CellState:
         """Return the first state on ``nodes`` nodes."""
         need_nodes(nodes, max([0, *self.radius, *self.bound_fraction]))
@@ -91,6 +93,7 @@ class RandomPerturbation:
         object.__setattr__(self, "amplitude", real_number("amplitude", self.amplitude, 0.0, 0.1))
         object.__setattr__(self, "modes", whole_number("modes", self.modes, 1, _HIGHEST_MODE))
 
+    @checked
     def state(self, parameters: Parameters, nodes: int) -> CellState:
         """Return the first state on ``nodes`` nodes."""
         shape, waves = _random_shape(self.seed, self.amplitude, self.modes, nodes)

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.curve import Curve, fourier
 from cellcrawl.errors import InputError, OutlineChangedWarning
 from cellcrawl.parameters import Parameters
@@ -16,6 +17,7 @@ from cellcrawl.starts.base import CellState
 from cellcrawl.starts.holding import held_polygon
 from cellcrawl.validation import real_array, real_number
 
+_TIMES = 3.0  # larger or smaller than the resting circle, an outline is in other units
 _NODES = 512  # at which an outline is tried when it is given
 
 
@@ -37,7 +39,8 @@ class FromOutline:
         Membrane tension; that of the resting circle unless given.
     radius : float, optional
         Rescale the outline about its centroid to the area of a circle of this radius, so that an
-        outline in micrometres or pixels may be given as it is. The resting circle has radius 1.
+        outline in micrometres or pixels may be given as it is. The resting circle has radius 1;
+        without ``radius`` an outline of another size than a cell's is refused.
     smoothing : float
         Width of the Gaussian that rounds the corners, over the outline's length, 0.001 to 0.1.
 
@@ -49,8 +52,9 @@ class FromOutline:
     Raises
     ------
     InputError
-        For fewer than three corners, values that are not finite, or an outline that would lose
-        more than a fifth of its area where it crosses or touches itself.
+        For fewer than three corners, values that are not finite, an outline that would lose
+        more than a fifth of its area where it crosses or touches itself, or one in other units than
+        cell radii.
 
     Notes
     -----
@@ -80,11 +84,14 @@ class FromOutline:
             object.__setattr__(self, "tension", real_number("tension", self.tension, -1e12, 1e12))
         smoothing = real_number("smoothing", self.smoothing, 0.001, 0.1)
         object.__setattr__(self, "smoothing", smoothing)
-        changes = held_polygon(xy, _NODES, smoothing)[1]
+        curve, changes = held_polygon(xy, _NODES, smoothing)
+        if self.radius is None:
+            _check_size(curve.area)
         object.__setattr__(self, "changes", changes)
         for change in changes:
             warnings.warn(f"the outline was changed: {change}", OutlineChangedWarning, stacklevel=3)
 
+    @checked
     def state(self, parameters: Parameters, nodes: int) -> CellState:
         """Return the first state on ``nodes`` nodes."""
         curve = held_polygon(self.xy, nodes, self.smoothing)[0]
@@ -138,3 +145,14 @@ class FromOutline:
         )
         smooth = np.fft.ifft(np.fft.fft(values) * damping).real
         return np.clip(smooth, 0.0, 1.0)
+
+
+def _check_size(area: float) -> None:
+    """Refuse an outline in micrometres, pixels or metres: it would run as a cell of that size."""
+    radius = math.sqrt(area / math.pi)
+    if not 1.0 / _TIMES <= radius <= _TIMES:
+        raise InputError(
+            f"the outline has the area of a circle of radius {radius:.4g}, a resting cell has "
+            f"radius 1: are its units others? Give radius=1 to make it a cell's size, or "
+            f"radius={radius:.4g} to keep it"
+        )

@@ -8,6 +8,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+from cellcrawl.arguments import checked
 from cellcrawl.sweeps import worker
 from cellcrawl.sweeps.crew import Crew, Todo
 from cellcrawl.sweeps.executors import executor_for
@@ -19,6 +20,7 @@ from cellcrawl.sweeps.worker import Execute
 from cellcrawl.validation import one_of, whole_number
 
 
+@checked
 def sweep(
     grid: Any,
     output: str | Path = "diagram",
@@ -43,7 +45,8 @@ def sweep(
         Folder of the results. One that is there is gone on with: no run is made twice.
     executor : Executor or str, optional
         Any `concurrent.futures.Executor`, such as that of a Dask client, or the address of a Dask
-        scheduler, as ``"tcp://node1:8786"``; worker processes on this machine unless given.
+        scheduler, as ``"tcp://node1:8786"``; worker processes on this machine unless given, or in
+        a worker of a `multiprocessing.Pool`, which may start none, that worker itself.
         Workers write to ``output``, so they must see it.
     workers : int, optional
         Number of worker processes; as many as there are cores unless given.

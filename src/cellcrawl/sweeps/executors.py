@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import multiprocessing
 import os
+import re
+import sys
 from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
+from pathlib import Path
 from typing import Any
 
 from cellcrawl.errors import InputError, MissingExtraError
@@ -39,7 +43,11 @@ def executor_for(given: Any, workers: int | None, grid: Grid) -> Iterator[Execut
     InputError
         For something that is no executor, or a scheduler that does not answer.
     """
+    if given is None and multiprocessing.current_process().daemon:
+        yield InProcess()  # a worker of a multiprocessing.Pool may start no processes of its own
+        return
     if given is None:
+        _see_that_workers_know(grid)
         pool = WorkerPool(workers or default_workers(), with_main=_needs_main(grid))
         try:
             yield pool
@@ -87,6 +95,10 @@ def means_killed(error: BaseException) -> bool:
 
 @contextlib.contextmanager
 def _dask(address: str) -> Iterator[Any]:
+    if not re.fullmatch(r"(\w+://)?[^\s/]+(:\d+)?(/\S*)?", address) or ":" not in address:
+        raise InputError(
+            f"executor = {shown(address)} is no address of a Dask scheduler, as tcp://node1:8786"
+        )
     try:
         import distributed
     except ImportError:
@@ -112,6 +124,17 @@ def _silence_dask() -> None:
     for name in list(logging.root.manager.loggerDict):
         if name.partition(".")[0] == "distributed":
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+
+
+def _see_that_workers_know(grid: Grid) -> None:
+    """Refuse a start of a class that is defined where no new process finds it."""
+    script = getattr(sys.modules["__main__"], "__file__", None)
+    if _needs_main(grid) and (script is None or not Path(script).is_file()):
+        raise InputError(
+            "a start is of a class that is defined in this notebook or session, where worker "
+            "processes cannot find it: put the class in a file of its own and import it, or give "
+            "executor=concurrent.futures.ThreadPoolExecutor(1)"
+        )
 
 
 def _needs_main(grid: Grid) -> bool:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import CONSTANT, Parameters, Schedule
 from cellcrawl.parameters.named import read_toml
@@ -20,12 +21,13 @@ from cellcrawl.simulation.start_tables import start_from_table
 from cellcrawl.starts import RandomPerturbation, Start
 from cellcrawl.sweeps.axes import NAMES, OPTIONS, PARAMETERS, SETTINGS, axis_values, plain, value_of
 from cellcrawl.sweeps.identity import start_identity
-from cellcrawl.validation import known_names, shown, table
+from cellcrawl.validation import known_names, shown, table, whole_number
 
 _TABLES = ("parameters", "axes", "points", "start", "schedule", "run")
 _RUN = (*SETTINGS, *OPTIONS)
 
 
+@checked
 @dataclass(frozen=True, kw_only=True)
 class Grid:
     """Runs to be made, described by what differs and what they share; immutable.
@@ -47,8 +49,8 @@ class Grid:
     Raises
     ------
     InputError
-        For an unknown name, an empty axis, a value out of range, or a name that is both an axis
-        and in a point.
+        For no axes and no points, an unknown name, an empty axis, a value out of range, or a name
+        that is both an axis and in a point.
 
     Examples
     --------
@@ -71,8 +73,11 @@ class Grid:
     def __post_init__(self) -> None:
         axes = {n: axis_values(n, values) for n, values in table("axes", self.axes).items()}
         points = tuple(_checked_point(point, axes) for point in self.points)
-        if self.points and not axes and not any(points):
-            raise InputError("the points of the grid are empty: give them names and values")
+        if not axes and not any(points):
+            raise InputError(
+                "the grid is empty: give axes, as in {'r_on': [20, 30]}, or points; simulate makes "
+                "a single run"
+            )
         object.__setattr__(self, "axes", axes)
         object.__setattr__(self, "points", points)
         self._check()
@@ -86,10 +91,10 @@ class Grid:
     def __len__(self) -> int:
         return math.prod(self.shape)
 
+    @checked
     def run(self, index: int) -> RunDescription:
         """Return the run at an index, 0 to ``len(grid) - 1``."""
-        if not 0 <= index < len(self):
-            raise IndexError(f"run {index} of a grid of {len(self)}")
+        whole_number("index", index, 0, len(self) - 1)
         changes: dict[str, Any] = {}
         for name in reversed(tuple(self.axes)):
             index, place = divmod(index, len(self.axes[name]))
@@ -134,7 +139,7 @@ class Grid:
         """Return the grid in a few words, as in ``r_on 26 x zeta_1 11 x seed 5``."""
         words = [f"{len(self.points)} points"] if self.points else []
         words += [f"{name} {len(values)}" for name, values in self.axes.items()]
-        return " x ".join(words) or "one run"
+        return " x ".join(words)
 
     def replace(self, /, **changes: Any) -> Grid:
         """Return a copy with some fields changed."""
@@ -220,6 +225,40 @@ def as_grid(grid: Any, **settings: Any) -> Grid:
     raise InputError(
         f"a grid is a table of names and values, a list of points or a TOML file, not {shown(grid)}"
     )
+
+
+def united(grids: Sequence[Grid]) -> Grid:
+    """Return one grid with the runs of several.
+
+    Where they share all but the values of the same axes it has those axes with all values, and so
+    may have runs that none of them has; otherwise its points are their runs.
+    """
+    first, *others = grids
+    if not others:
+        return first
+    shared = [{n: v for n, v in g.describe().items() if n not in ("axes", "points")} for g in grids]
+    alike = all(settings == shared[0] for settings in shared)
+    if alike and all(set(g.axes) == set(first.axes) and not g.points for g in grids):
+        axes = {
+            name: list({repr(value): value for g in grids for value in g.axes[name]}.values())
+            for name in first.axes
+        }
+        return first.replace(axes=axes)
+    points: dict[str, dict[str, Any]] = {}
+    for grid in grids:
+        own = {} if alike else _own_settings(grid)
+        for point in grid.points or ({},):
+            for values in itertools.product(*grid.axes.values()):
+                combined = {**own, **point, **dict(zip(grid.axes, values, strict=True))}
+                points.setdefault(repr(combined), combined)
+    return first.replace(axes={}, points=list(points.values()))
+
+
+def _own_settings(grid: Grid) -> dict[str, Any]:
+    """Return what a grid's runs share, as values of a point."""
+    settings = {name: getattr(grid, name) for name in ("start", "schedule", *SETTINGS)}
+    settings = {name: value for name, value in settings.items() if value is not None}
+    return {**grid.parameters.to_dict(), **settings, **grid.options}
 
 
 def _checked_point(point: Any, axes: Mapping[str, Any]) -> dict[str, Any]:

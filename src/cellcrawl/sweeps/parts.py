@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, Final
 
-from cellcrawl.errors import StorageError
+from cellcrawl.errors import StorageError, what_would_help
 from cellcrawl.parameters import DESCRIPTIONS
 from cellcrawl.sweeps.measures import MEASURES
 
@@ -152,5 +152,5 @@ def cannot_write(path: Path, error: OSError) -> StorageError:
     reason = error.strerror or str(error).splitlines()[0]
     return StorageError(
         f"cannot write {path}: {reason}; the rows saved before stay, and the same command goes on "
-        "once there is room"
+        f"{what_would_help(error, reason)}"
     )

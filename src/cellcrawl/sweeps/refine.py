@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import DESCRIPTIONS
 from cellcrawl.sweeps.driver import Sweeping
@@ -38,6 +39,7 @@ class Cell(NamedTuple):
         return tuple(Cell(i, j, half) for i, j in Cell(self.i, self.j, half).corners)
 
 
+@checked
 def refine(
     grid: Any,
     output: str | Path = "diagram",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -10,16 +11,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.simulation.events import MODEL_ENDINGS
 from cellcrawl.sweeps.axes import plain
-from cellcrawl.sweeps.grid import Grid
+from cellcrawl.sweeps.grid import Grid, united
 from cellcrawl.sweeps.kept import read_kept
 from cellcrawl.sweeps.measures import MEASURES, described_columns
 from cellcrawl.sweeps.parts import COLUMNS, NOT_RUN, schema
 from cellcrawl.sweeps.planes import varied
-from cellcrawl.sweeps.store import SweepStore
-from cellcrawl.validation import known_names
+from cellcrawl.sweeps.store import SweepStore, grids_of
+from cellcrawl.validation import known_names, plain_number, shown
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -60,18 +62,19 @@ class Sweep:
     interrupted : bool
     """
 
+    @checked
     def __init__(
         self, path: str | Path, grid: Grid | None = None, *, interrupted: bool = False
     ) -> None:
         self._store = SweepStore(path)
         self._manifest = self._store.manifest()
         self._grid = grid
-        self.path = Path(path)
+        self.path = self._store.folder
         self.interrupted = interrupted
 
     @property
     def grid(self) -> Grid:
-        """The grid whose runs these are.
+        """The grid whose runs these are; of a folder that was extended, all grids as one.
 
         Raises
         ------
@@ -80,7 +83,7 @@ class Sweep:
         """
         if self._grid is None:
             try:
-                self._grid = Grid.from_dict(self._manifest["grid"])
+                self._grid = united([Grid.from_dict(g) for g in grids_of(self._manifest)])
             except InputError as error:
                 raise InputError(
                     f"the grid of {self.path} cannot be made from its folder ({error}): give it, "
@@ -93,10 +96,14 @@ class Sweep:
         """What is kept: "rows", "tracks" or "fields"."""
         return str(self._manifest["keep"])
 
+    @checked
     def is_of(self, grid: Grid) -> bool:
         """Whether these are the results of ``grid``."""
-        return bool(self._manifest["digest"] == grid.digest)
+        if self._manifest["digest"] == grid.digest:
+            return True
+        return grid.describe() in grids_of(self._manifest)[1:]
 
+    @checked
     def table(self, columns: list[str] | None = None) -> pa.Table:
         """Return the rows there are, one a run, as a pyarrow Table.
 
@@ -117,8 +124,14 @@ class Sweep:
         return table.take(_one_a_key(table)).select(wanted)
 
     def to_pandas(self) -> pd.DataFrame:
-        """Return the rows as a pandas DataFrame."""
-        frame: pd.DataFrame = self.table().to_pandas()
+        """Return the rows as a pandas DataFrame, in the order of the grid.
+
+        Rows that are no points of the grid, those of `sweeps.refine`, come last.
+        """
+        table = self.table()
+        places = self._places(table)
+        order = sorted(range(len(table)), key=lambda row: places.get(row, len(places) + row))
+        frame: pd.DataFrame = table.take(order).to_pandas()
         return frame
 
     def to_dataset(self) -> xr.Dataset:
@@ -171,14 +184,16 @@ class Sweep:
         if self.keep == "rows":
             raise InputError(f"{self.path} keeps rows only: sweep with keep='tracks' or 'fields'")
         known_names("the rows", selection, COLUMNS)
+        wanted = {name: _as_in_a_row(name, value) for name, value in selection.items()}
         table = self.table(list(dict.fromkeys(["key", "part", "status", "message", *selection])))
         found = [
             row
             for row in table.to_pylist()
-            if all(row[name] == plain(value) for name, value in selection.items())
+            if all(row[name] == value for name, value in wanted.items())
         ]
         if len(found) != 1:
-            raise InputError(f"{len(found)} runs match {selection}: one is needed")
+            text = ", ".join(f"{name} = {shown(value)}" for name, value in selection.items())
+            raise InputError(f"{len(found)} runs match {text or 'no value'}: one is needed")
         if found[0]["part"] is None:
             raise InputError(f"this run has no result: {found[0]['message']}")
         return read_kept(self._store.layout.kept(found[0]["part"]), found[0]["key"])
@@ -189,8 +204,12 @@ class Sweep:
         modes = Counter(mode for mode in table["mode"].to_pylist() if mode is not None)
         statuses = Counter(table["status"].to_pylist())
         runs, done = int(self._manifest["runs"]), len(table)
-        if self._manifest.get("extended"):
-            done = len(self._places(self.table()))
+        if "grids" in self._manifest:
+            names = list(described_columns(self.grid.run(0)))
+            grids = [Grid.from_dict(found) for found in grids_of(self._manifest)]
+            asked = {tuple(described_columns(run).values()) for grid in grids for run in grid}
+            rows = self.table(names).to_pylist()
+            runs, done = len(asked), len(asked & {tuple(row.values()) for row in rows})
         if "levels" in self._manifest:
             runs = done
         return Status(runs, done, dict(statuses), dict(modes), self._store.is_locked())
@@ -207,6 +226,7 @@ class Sweep:
             runs = runs // coarse * ((coarse - 1) * scale + 1)
         return runs
 
+    @checked
     def failures(self, most: int = 5) -> dict[str, int]:
         """Return the commonest reasons of runs that did not end as the model allows."""
         table = self.table(["status", "message"])
@@ -242,6 +262,7 @@ class Sweep:
         return places
 
 
+@checked
 def open_sweep(path: str | Path, grid: Grid | None = None) -> Sweep:
     """Open the results of a sweep, finished or not.
 
@@ -260,6 +281,19 @@ def open_sweep(path: str | Path, grid: Grid | None = None) -> Sweep:
         If it is damaged or was made by a newer version.
     """
     return Sweep(path, grid)
+
+
+def _as_in_a_row(name: str, value: Any) -> Any:
+    """Return a value of a run as the column of that name holds it, or raise `InputError`."""
+    value = plain(plain_number(value))
+    if name in ("start", "schedule", "options") and not isinstance(value, str):
+        try:
+            return json.dumps(value)
+        except (TypeError, ValueError):
+            raise InputError(f"{name} = {shown(value)} is no {name} of a run") from None
+    if value is not None and not isinstance(value, (str, int, float)):
+        raise InputError(f"{name} = {shown(value)} must be one value: one run is asked for")
+    return value
 
 
 def _one_a_key(table: pa.Table) -> np.ndarray:

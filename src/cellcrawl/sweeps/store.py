@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from cellcrawl.arguments import file_path
 from cellcrawl.errors import InputError, StorageError
 from cellcrawl.locks import is_locked, locked
 from cellcrawl.sweeps.grid import Grid
@@ -45,7 +46,7 @@ class SweepStore:
     """
 
     def __init__(self, folder: str | Path) -> None:
-        self.folder = Path(folder)
+        self.folder = file_path("output", folder).absolute()  # the program may change its folder
         self.layout = Layout(self.folder)
 
     def exists(self) -> bool:
@@ -100,8 +101,9 @@ class SweepStore:
             "grid": grid.describe(),
         }
         if self.exists():
-            if not self._is_the_same(manifest, self.manifest(), extend):
-                self._write_manifest({**manifest, "extended": True})
+            found = self.manifest()
+            if not self._is_the_same(manifest, found, extend):
+                self._write_manifest({**found, "grids": [*grids_of(found), grid.describe()]})
             return
         if self.folder.exists() and (not self.folder.is_dir() or any(self.folder.iterdir())):
             raise InputError(f"{self.folder} exists and holds no sweep: give another output")
@@ -118,7 +120,7 @@ class SweepStore:
                 f"{self.folder} keeps {found['keep']}, not {asked['keep']}: give another output, "
                 f"or keep = {found['keep']!r}"
             )
-        same: bool = found["digest"] == asked["digest"]
+        same = asked["digest"] == found["digest"] or asked["grid"] in grids_of(found)[1:]
         if not same and not extend:
             raise InputError(
                 f"{self.folder} holds another grid, of {found['runs']} runs: give another output, "
@@ -225,6 +227,11 @@ class SweepStore:
     def is_locked(self) -> bool:
         """Whether a driver is at work on the folder."""
         return any(is_locked(path) for path in self.layout.work.glob("*.lock"))
+
+
+def grids_of(manifest: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the grids of a folder, described: the first, and those it was extended by."""
+    return list(manifest.get("grids", [manifest["grid"]]))
 
 
 def new_name(driver: str) -> str:

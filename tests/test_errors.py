@@ -1,0 +1,29 @@
+"""Advice fits the error."""
+
+from __future__ import annotations
+
+import errno
+
+import pytest
+
+from cellcrawl.errors import nearest_name, what_would_help
+
+
+@pytest.mark.parametrize(
+    ("error", "reason", "advice"),
+    [
+        (OSError(errno.ENOSPC, "full"), "", "once there is room"),
+        (OSError("HDF5's own words"), "No space left on device", "once there is room"),
+        (PermissionError(errno.EACCES, "denied"), "Permission denied", "once it can be written"),
+        (OSError(errno.EROFS, "read-only"), "", "once it can be written"),
+    ],
+)
+def test_only_a_full_disk_waits_for_room(error, reason, advice):
+    assert what_would_help(error, reason) == advice
+
+
+def test_names_are_guessed_or_listed_once():
+    assert nearest_name("zeta1", ["zeta_1", "D"]) == "did you mean 'zeta_1'?"
+    assert nearest_name("d", ["zeta_1", "D"]) == "did you mean 'D'?"
+    assert nearest_name("qqq", ["zeta_1", "D"]) == "known names: D, zeta_1"
+    assert nearest_name(["D"], ["zeta_1", "D"]) == "known names: D, zeta_1"
