@@ -10,6 +10,7 @@ import numpy as np
 
 from cellcrawl.errors import InputError
 from cellcrawl.microscopy.source import UNTOLD, LeftOut, Source, listed
+from cellcrawl.validation import shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +104,13 @@ class Tracks(Sequence[Track]):
 
         Ids that are missing or repeated become numbers, so that no two cells share one.
         """
-        given = list(tracks)
+        try:
+            given = list(tracks)
+        except Exception:
+            raise InputError(f"tracks must be a list of tracks, not {shown(tracks)}") from None
+        for track in given:
+            if not all(hasattr(track, name) for name in ("t", "x", "y")):
+                raise InputError(f"a track has t, x and y, and {shown(track)} has not")
         first = given[0] if given else None
         source = source or getattr(first, "source", None) or _source_of(first)
         ids = [str(getattr(track, "id", "")) for track in given]
