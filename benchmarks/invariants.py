@@ -15,13 +15,14 @@ import time
 from pathlib import Path
 from typing import Any
 
-import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.figure import Figure
 
 import cellcrawl as cc
 from cellcrawl.bench import exact, machine
 from cellcrawl.bench.cases import check_start
 from cellcrawl.curve import fourier
+from cellcrawl.plot.style import GUIDE, PAGE, paper_figure
 
 CELL = (26.0, 600.0)
 WINDOW = 50.0  # over which length is averaged and a period taken
@@ -30,7 +31,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "paper": {"nodes": 800, "dt": 1e-3},
     "spline": {"nodes": 256, "dt": 4e-3},
 }
-COLOURS = {"adaptive": "#1f77b4", "paper": "#d1495b", "spline": "#2a9d8f"}
+COLOURS = {"adaptive": "#0072b2", "paper": "#e69f00", "spline": "#009e73"}
 
 
 def measured(solver: str, t_end: float, path: Path) -> dict[str, Any]:
@@ -61,26 +62,27 @@ def measured(solver: str, t_end: float, path: Path) -> dict[str, Any]:
     return {**told, "options": OPTIONS[solver], **rows}
 
 
-def drawn(content: dict[str, Any]) -> plt.Figure:
+def drawn(content: dict[str, Any]) -> Figure:
     """Return the picture of what was recorded."""
-    figure, axes = plt.subplots(3, 1, figsize=(7.0, 5.6), sharex=True, layout="constrained")
-    for solver, run in content["solvers"].items():
-        label = f"{solver}, to t = {run['reached']:g}"
-        settled = np.array(run["time"]) > 100.0  # or the birth of the zigzag fills the panels
-        when = np.array(run["time"])[settled]
-        off = np.maximum(np.abs(np.array(run["off_law"])[settled]), 1e-16)
-        axes[0].semilogy(when, off, color=COLOURS[solver], lw=1, label=label)
-        for ax, name in ((axes[1], "length"), (axes[2], "period")):
-            values = np.array(run[name], dtype=float)[settled]
-            ax.plot(when, values, color=COLOURS[solver], lw=1)
-    axes[2].axhline(exact.PERIODS[26, 600], color="0.5", lw=0.8, ls="--", zorder=0)
-    axes[0].set_ylabel("area off the\ntension law")
-    axes[1].set_ylabel("mean length")
-    axes[2].set_ylabel("period of\nthe tension")
-    axes[2].set_xlabel("time")
-    axes[0].legend(frameon=False, fontsize=8, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1))
-    for ax in axes:
-        ax.spines[["top", "right"]].set_visible(False)
+    with paper_figure(PAGE, 4.6) as figure:
+        axes = figure.subplots(3, 1, sharex=True)
+        for solver, run in content["solvers"].items():
+            label = f"{solver}, to $t$ = {run['reached']:g}"
+            settled = np.array(run["time"]) > 100.0  # or the birth of the zigzag fills the panels
+            when = np.array(run["time"])[settled]
+            off = np.maximum(np.abs(np.array(run["off_law"])[settled]), 1e-16)
+            axes[0].semilogy(when, off, color=COLOURS[solver], label=label)
+            for ax, name in ((axes[1], "length"), (axes[2], "period")):
+                values = np.array(run[name], dtype=float)[settled]
+                ax.plot(when, values, color=COLOURS[solver])
+        axes[2].axhline(exact.PERIODS[26, 600], color=GUIDE, linestyle="--", zorder=0)
+        axes[0].set_ylabel("area off the\ntension law ($R_0^2$)")
+        axes[1].set_ylabel("mean length\n($R_0$)")
+        axes[2].set_ylabel("period of the\ntension ($1/k_\\mathrm{off}^0$)")
+        axes[2].set_xlabel("time $t$ ($1/k_\\mathrm{off}^0$)")
+        axes[0].legend(frameon=False, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1))
+        for ax in axes:
+            ax.spines[["top", "right"]].set_visible(False)
     return figure
 
 

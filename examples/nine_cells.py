@@ -11,9 +11,9 @@ import sys
 from pathlib import Path
 
 import xarray as xr
-from matplotlib.figure import Figure
 
 import cellcrawl as cc
+from cellcrawl.plot.style import paper_figure
 
 # (r_on, zeta_1) -> time between the contours drawn, as in Fig. 4 of the paper
 CELLS = {
@@ -39,16 +39,14 @@ def crawl(r_on: float, zeta_1: float, t_end: float = 100.0) -> xr.Dataset:
 def main(folder: Path) -> None:
     """Draw all nine, and three of them side by side."""
     (folder / "gallery").mkdir(parents=True, exist_ok=True)
-    three = Figure(figsize=(7.2, 3.0), layout="constrained")
-    axes = dict(zip(THREE, three.subplots(1, 3), strict=True))
+    three = {}
     for (r_on, zeta_1), every in CELLS.items():
         run = crawl(r_on, zeta_1)
-        figure = Figure(figsize=(3.6, 3.2), layout="constrained")
-        cc.plot.path(run, every=every, ax=figure.subplots())
+        with paper_figure(3.6, 3.2) as figure:
+            cc.plot.path(run, every=every, ax=figure.subplots())
         figure.savefig(folder / "gallery" / f"{r_on}-{zeta_1}.png", dpi=160)
         if (r_on, zeta_1) in THREE:
-            cc.plot.path(run, every=every, ax=axes[r_on, zeta_1], colorbar=r_on == 24)
-            axes[r_on, zeta_1].set_title(THREE[r_on, zeta_1])
+            three[THREE[r_on, zeta_1]] = run
         heading = cc.observables.heading(run).sel(time=slice(20, None))
         late = run.sel(time=slice(20, None))
         print(
@@ -60,7 +58,9 @@ def main(folder: Path) -> None:
             f"turned {float(heading[-1] - heading[0]):+.2f} rad, swings "
             f"{float(heading.max() - heading.min()):.2f} rad"
         )
-    three.savefig(folder / "three-cells.png", dpi=200)
+    cc.plot.paths({name: three[name] for name in THREE.values()}, every=10).savefig(
+        folder / "three-cells.png", dpi=200
+    )
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ GRID = cc.Grid(
 def main(folder: Path, grid: cc.Grid = GRID, levels: int = 3) -> cc.Sweep:
     """Refine the diagram and draw it, with maps of two measures."""
     diagram = sweeps.refine(grid, folder, levels=levels, progress=True)
-    cc.plot.diagram(diagram).figure.savefig(folder / "diagram.png", dpi=200)
+    cc.plot.diagram(diagram).figure.savefig(folder / "diagram.png", dpi=160)
     for measure in ("speed", "circularity"):
         cc.plot.measure_map(diagram, measure).figure.savefig(folder / f"{measure}.png", dpi=200)
     print(f"{len(diagram.table())} of {diagram.full_grid_runs()} runs of the full grid")

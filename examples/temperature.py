@@ -15,11 +15,13 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import cellcrawl as cc
+from cellcrawl.plot.colouring import shared_bar
 from cellcrawl.plot.style import paper_figure
 
 CELSIUS = (5, 10, 15, 20, 25, 30, 35)
 # at 25 degrees Celsius (33, 560); heat raises r_on, as binding has the higher activation energy
 CELL = cc.PhysicalParameters(on_rate=3.3, adhesive_friction=560 * 200.0)
+LIMITS = (0.1, 0.8)  # of the colours of the bound fraction, in all panels
 ENERGIES = cc.ActivationEnergies(on_rate=75e3, off_rate=50e3)
 
 
@@ -69,9 +71,12 @@ def draw_walk(runs: dict[int, xr.Dataset]) -> Figure:
 def _draw_panels(figure: Figure, runs: dict[int, xr.Dataset]) -> None:
     axes = figure.subplots(2, 4).ravel()
     for (celsius, run), ax in zip(runs.items(), axes, strict=False):
-        cc.plot.path(run, every=10, ax=ax, colorbar=False)
+        cc.plot.path(run, every=10, ax=ax, limits=LIMITS, colorbar=False)
         mode = cc.classify(run).mode
-        ax.set_title(f"{celsius} °C, $r_\\mathrm{{on}}$ = {at(celsius).r_on:.1f}\n{mode}")
+        ax.set_title(
+            f"{celsius} °C, $r_\\mathrm{{on}}$ = {at(celsius).r_on:.1f}\n{mode}", loc="left"
+        )
+    shared_bar(axes[:4].tolist(), run, "bound_fraction", LIMITS)
     fine = np.linspace(CELSIUS[0], CELSIUS[-1], 61)
     axes[-1].plot(fine, [at(c).r_on for c in fine], color="#222222", lw=1)
     axes[-1].plot(CELSIUS, [at(c).r_on for c in CELSIUS], "o", color="#0072b2", ms=4)
@@ -89,7 +94,7 @@ def draw_heating(run: xr.Dataset, temperatures: np.ndarray) -> Figure:
 
 def _draw_both(figure: Figure, run: xr.Dataset, temperatures: np.ndarray) -> None:
     left, right = figure.subplots(1, 2)
-    cc.plot.path(run, every=10, ax=left, colorbar=False)
+    cc.plot.path(run, every=10, ax=left, limits=LIMITS)
     heading = cc.observables.heading(run).sel(time=slice(5, None))
     right.plot(heading.time, heading, color="#b5338a", lw=1)
     right.set_xlabel("time $t$ ($1/k_\\mathrm{off}^0$ of the moment)")

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import hypothesis
+import matplotlib as mpl
 import pytest
 
 import cellcrawl as cc
@@ -16,6 +19,11 @@ hypothesis.settings.register_profile(
     "cellcrawl", deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow]
 )
 hypothesis.settings.load_profile("cellcrawl")
+
+
+def settings() -> dict[str, Any]:
+    """All of matplotlib's settings but the backend, which loads pyplot when it is looked at."""
+    return {name: mpl.rcParams[name] for name in mpl.rcParams if name != "backend"}
 
 
 @pytest.fixture(scope="session")

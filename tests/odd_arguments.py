@@ -80,6 +80,12 @@ def run_without_records() -> xr.Dataset:
     return circling(0.3, records=3).isel(time=slice(0))
 
 
+def styled(**options: Any) -> None:
+    """Go into the style and out of it."""
+    with cc.plot.styled(**options):
+        pass
+
+
 def public_calls(folder: Path) -> list[Call]:
     """Return a call of every public callable; runs, sweeps and files lie in ``folder``."""
     return list(_calls(folder))
@@ -292,7 +298,7 @@ def _calls(folder: Path) -> Iterator[Call]:
     limits = (0.1, 0.8)
     yield call(
         plot.cell, dataset=run, time=0.2, field="bound_fraction", limits=limits, velocity=True,
-        colorbar=True, ax=ax(),
+        colorbar=True, colormap="magma", ax=ax(),
     )  # fmt: skip
     yield call(
         plot.snapshots, dataset=run, times=[0.1, 0.2], field="bound_fraction", limits=limits,
@@ -300,12 +306,13 @@ def _calls(folder: Path) -> Iterator[Call]:
     )  # fmt: skip
     yield call(
         plot.cycle, dataset=long, start=1.0, duration=10.0, shapes=3, quantity="tension",
-        field="bound_fraction", limits=limits, axes=list(Figure().subplots(2)),
+        field="bound_fraction", limits=limits, colormap="magma", colorbar=False,
+        axes=list(Figure().subplots(2)),
     )  # fmt: skip
-    yield call(plot.diagram, sweep=sweep, x="r_on", y="zeta_1", legend=True, ax=ax())
+    yield call(plot.diagram, sweep=sweep, x="r_on", y="zeta_1", legend=True, size=3.0, ax=ax())
     yield call(
         plot.measure_map, sweep=late, measure="area", x="r_on", y="zeta_1", colorbar=True,
-        ax=ax(),
+        limits=(0.0, 5.0), colormap="magma", ax=ax(),
     )  # fmt: skip
     yield call(
         plot.dispersion,
@@ -320,7 +327,16 @@ def _calls(folder: Path) -> Iterator[Call]:
     yield call(
         plot.kymograph, dataset=run, field="bound_fraction", origin="front", limits=limits, ax=ax()
     )
-    yield call(plot.kymographs, dataset=run, origin="front", axes=list(Figure().subplots(4, 1)))
+    yield call(
+        plot.kymographs, dataset=run, fields=["friction", "theta"], origin="front",
+        limits={"friction": (0.0, 9e3)}, colormap="magma", colorbar=False,
+        axes=list(Figure().subplots(2, 1)),
+    )  # fmt: skip
+    yield call(
+        plot.paths, runs={"one": run, "two": run}, every=0.2, field="bound_fraction",
+        limits=limits, colormap="magma", colorbar=True,
+    )  # fmt: skip
+    yield call(styled, rc={"lines.linewidth": 2.0}, width=3.0, font_size=9.0, colormap="magma")
     yield call(
         plot.path, dataset=run, every=0.2, field="bound_fraction", limits=limits, colorbar=True,
         times=True, ax=ax(),
@@ -334,7 +350,10 @@ def _calls(folder: Path) -> Iterator[Call]:
     )
     yield call(plot.regimes, diagram=diagram, lines=False)
     yield call(plot.stability, stability_map=stability, legend=True, ax=ax())
-    yield call(plot.summary, dataset=run, every=0.2)
+    yield call(
+        plot.summary, dataset=run, every=0.2, field="bound_fraction", limits=limits,
+        colormap="magma",
+    )  # fmt: skip
     yield call(plot.time_series, dataset=run, quantities=["tension"], axes=[ax()])
     yield call(plot.two_edges, dataset=edges, axes=list(Figure().subplots(3, 1)))
     yield call(

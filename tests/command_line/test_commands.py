@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
+from PIL import Image
 
 import cellcrawl as cc
 from cellcrawl.command_line.main import run
+from cellcrawl.command_line.report import _report_motion
 from cellcrawl.parameters import DESCRIPTIONS
 from cellcrawl.simulation.events import STATUSES
+from tests.runs import circle_on_track
 
 QUICK = ["--solver", "paper", "--nodes", "100", "--t-end", "0.3"]
 
@@ -161,3 +165,82 @@ def test_simulate_has_a_flag_for_every_parameter(capsys):
 def test_completion_script_is_for_this_command(shell, capsys):
     assert run(["completion", shell]) == 0
     assert "_CELLCRAWL_COMPLETE" in capsys.readouterr().out
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("kept")
+    cc.simulate(
+        t_end=2.0, save_every=0.1, start=cc.Eigenmode(k=2), nodes=64, output=folder / "run.nc"
+    ).close()
+    return folder
+
+
+def test_plot_movie_and_info_take_the_folder_of_a_run(kept, capsys):
+    assert run(["plot", str(kept)]) == 0
+    assert run(["movie", str(kept), "--seconds", "0.2", "--size", "160,120"]) == 0
+    assert {"summary.png", "cell.mp4"} <= {path.name for path in kept.iterdir()}
+    assert run(["info", str(kept)]) == 0
+    said = capsys.readouterr().out
+    assert "start Eigenmode" in said
+    assert "seed -1" not in said
+    assert "records: 21" in said
+
+
+def test_the_look_of_a_picture_is_set_on_the_command_line(kept, tmp_path):
+    picture = tmp_path / "path.png"
+    look = ["--width", "5", "--font-size", "9", "--colormap", "magma", "--rc", "lines.linewidth=2"]
+    where = ["--field", "off_rate", "--limits", "1,100", "--every", "1", "--dpi", "50"]
+    arguments = ["--kind", "path", *look, *where, "--style", "dark_background"]
+    assert run(["plot", str(kept), *arguments, "--output", str(picture)]) == 0
+    with Image.open(picture) as image:
+        assert image.width == 250
+        assert image.convert("RGB").getpixel((2, 2)) == (0, 0, 0)
+    for kind, more in (
+        ("snapshots", ["--time", "0,1"]),
+        ("kymographs", ["--field", "friction", "--origin", "material"]),
+        ("time_series", ["--field", "tension,area"]),
+        ("cell", ["--time", "1"]),
+    ):
+        target = tmp_path / f"{kind}.png"
+        assert run(["plot", str(kept), "--kind", kind, *more, "--output", str(target)]) == 0
+        assert target.stat().st_size > 1000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--kind", "snapshots"], "needs --time"),
+        (["--kind", "path", "--time", "3"], "--time means nothing for --kind path"),
+        (["--kind", "cell", "--time", "1,2"], "shows one --time"),
+        (["--limits", "3"], "give two numbers"),
+        (["--limits", "a,b"], "numbers with commas"),
+        (["--rc", "font.size"], "give a name and a value"),
+        (["--rc", "lines.linewidth=x"], "lines.linewidth = 'x'"),
+        (["--style", "no-such-style"], "no-such-style"),
+        (["--colormap", "viridi"], "did you mean 'viridis'"),
+        (["--width", "0"], "width = 0.0 is out of range"),
+    ],
+)
+def test_looks_that_cannot_be_are_one_line(kept, arguments, said, capsys):
+    assert run(["plot", str(kept), *arguments]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+
+
+def test_a_folder_without_a_run_or_with_several_is_told(tmp_path, capsys):
+    assert run(["info", str(tmp_path)]) == 2
+    assert "holds no run" in capsys.readouterr().err
+    for name in ("a.nc", "b.nc"):
+        (tmp_path / name).touch()
+    assert run(["plot", str(tmp_path)]) == 2
+    assert "holds 2 runs: give one of a.nc, b.nc" in capsys.readouterr().err
+
+
+def test_a_cell_at_rest_has_not_turned_by_nan(capsys):
+    still = circle_on_track(np.arange(5.0), lambda t: ((0.0, 0.0), (0.0, 0.0)))
+    _report_motion(still)
+    said = capsys.readouterr().out
+    assert "at rest" in said
+    assert "nan" not in said

@@ -82,3 +82,23 @@ def test_mistakes_are_one_line_and_exit_code_2(grid, capsys, monkeypatch, argume
     assert said.err.count("\n") == 1
     assert says in said.err
     assert [path.name for path in grid.with_name("busy").iterdir()] == ["notes.txt"]
+
+
+def test_a_sweep_along_one_parameter_is_drawn_and_its_folder_can_be_asked(
+    tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    content = "[axes]\nr_on = [20, 30]\nseed = [1, 2]\n[run]\nt_end = 6.0\nnodes = 64\n"
+    (tmp_path / "line.toml").write_text(content)
+    assert run(["sweep", "line.toml", "--workers", "1"]) == 0
+    assert (tmp_path / "line" / "diagram.png").stat().st_size > 1000
+    capsys.readouterr()
+    assert run(["info", "line"]) == 0
+    said = capsys.readouterr().out
+    assert "r_on 2 x seed 2: 4 runs" in said
+    assert "t_end = 6" in said
+    for kind in ("diagram", "speed"):
+        assert run(["plot", "line", "--kind", kind, "--width", "3"]) == 0
+        assert (tmp_path / "line" / f"{kind}.png").exists()
+    assert run(["plot", "line", "--kind", "path"]) == 2
+    assert "--kind of a sweep" in capsys.readouterr().err

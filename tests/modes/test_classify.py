@@ -217,6 +217,39 @@ def test_a_cell_at_rest_in_a_dataset_is_stationary():
     assert cc.classify(run).mode == "stationary"
 
 
+def test_a_cell_that_turns_on_the_spot_is_other_with_the_detail_of_a_steady_spin():
+    on_the_spot = circling(0.5, radius=0.4, records=1001)
+    found = cc.classify(on_the_spot)
+    assert (found.mode, found.detail) == ("other", "steady spin")
+    assert "spins to the left on the spot, once round in 12.6" in found.summary()
+    assert found.as_row()["detail"] == "steady spin"
+    round_a_circle = cc.classify(circling(0.5, radius=3.0, records=1001))
+    assert (round_a_circle.mode, round_a_circle.detail) == ("rotational", "")
+    assert cc.classify(on_the_spot, use_size=False).mode == "rotational"
+
+
+def test_a_spin_that_begins_after_turns_to_the_other_side_is_seen():
+    """As at (44, 560): the cell wanders before it settles into its spin."""
+    t = 0.1 * np.arange(1001)
+    heading = np.where(t < 12.0, 0.5 * t, 6.0 - 0.5 * (t - 12.0))
+    track = (t, *(0.02 * np.cumsum(f(heading)) for f in (np.cos, np.sin)))
+    found = cc.classify_track(*track, cell_radius=1.0)
+    assert (found.mode, found.detail) == ("other", "steady spin")
+    assert found.measures.turning_rate == pytest.approx(-0.5, rel=0.05)
+
+
+@pytest.mark.parametrize("status", ["out_of_range", "unresolved", "not_finite", "step_too_small"])
+def test_a_run_that_a_failure_ended_says_so_and_is_not_sure(status):
+    run = straight(records=90, step=0.1)
+    assert cc.classify(run).confidence == 1.0
+    found = cc.classify(run.assign_attrs(status=status))
+    assert found.mode == "gliding"
+    assert found.confidence <= 0.5
+    assert f"the run ended {status} at t = 8.9" in found.summary()
+    track = (run[name].values for name in ("time", "centroid_x", "centroid_y"))
+    assert cc.classify_track(*track, status=status).confidence <= 0.5
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("point", "mode"),

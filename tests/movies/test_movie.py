@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import builtins
+import itertools
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -16,6 +18,8 @@ from PIL import Image
 
 import cellcrawl as cc
 from cellcrawl.movies.scene import Scene
+from cellcrawl.movies.timing import gif_times
+from cellcrawl.plot.inputs import drawable
 from tests.runs import circling, straight
 
 RUN = circling(0.3, records=101)
@@ -217,3 +221,41 @@ def test_without_an_encoder_a_gif_is_offered(tmp_path, monkeypatch):
     monkeypatch.setattr(builtins, "__import__", without_ffmpeg)
     with pytest.raises(cc.errors.MissingExtraError, match=r"write a \.gif"):
         cc.movie(RUN, tmp_path / "cell.mp4")
+
+
+@pytest.mark.parametrize("fps", [7.0, 24.0, 30.0, 50.0, 60.0, 120.0])
+@pytest.mark.parametrize("frames", [1, 2, 75, 600])
+def test_a_gif_takes_as_long_as_its_frames(fps, frames):
+    shown, durations = gif_times(frames, fps)
+    assert sum(durations) == pytest.approx(1000.0 * frames / fps, abs=20.1)
+    assert min(durations) >= 20
+    assert shown[-1] == frames - 1
+    assert np.all(np.diff(shown) > 0)
+    assert len(shown) == len(durations)
+
+
+def test_a_movie_shows_itself_in_a_notebook_and_is_a_path_all_the_same(tmp_path):
+    made = cc.movie(RUN, tmp_path / "cell.gif", seconds=0.1, size=SMALL)
+    assert made == tmp_path / "cell.gif"
+    assert made._repr_html_().startswith('<img src="data:image/gif;base64,R0lGOD')
+    assert pickle.loads(pickle.dumps(made)) == made
+    assert made.parent._repr_html_() is None
+    made.unlink()
+    assert made._repr_html_() is None
+
+
+@pytest.mark.parametrize("field", ["bound_fraction", "normal_velocity", "curvature", "off_rate"])
+@pytest.mark.parametrize("run", [RUN, cc.Scales().dataset(RUN)], ids=["plain", "si"])
+def test_time_has_its_unit_and_nothing_on_the_strip_runs_into_another(field, run):
+    scene = Scene(drawable(run), np.array([0, 9]), field, None, "follow", (480, 360))
+    scene.draw(1)
+    strip, box = scene._ax.figure.axes[1:]
+    renderer = scene._canvas.get_renderer()
+    texts = [text for text in strip.texts if text.get_text()]
+    spans = [text.get_window_extent(renderer) for text in (*texts, *box.texts)]
+    spans += [line.get_window_extent(renderer) for line in strip.lines]
+    spans.append(box.bbox)
+    spans.sort(key=lambda span: span.x0)
+    for left, right in itertools.pairwise(spans):
+        assert left.x1 <= right.x0 + 0.5
+    assert any(unit in text.get_text() for text in texts for unit in ("k_", "s"))

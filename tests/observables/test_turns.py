@@ -60,3 +60,13 @@ def test_swings_alternate_and_are_large_enough_and_join(heading, smallest):
 def test_a_smallest_angle_must_be_above_0():
     with pytest.raises(cc.InputError, match="smallest = 0"):
         cc.observables.turning_events(*straight_track(), smallest=0)
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-7])
+def test_a_rest_before_and_after_a_straight_way_is_no_turn(noise):
+    t = 0.1 * np.arange(601)
+    along = np.clip(0.2 * (t - 20.0), 0.0, 4.0)  # at rest up to 20 and from 40 on
+    back = -1e-4 * np.minimum(t, 20.0)  # and drifting the other way before
+    x, y = np.random.default_rng(1).normal(scale=noise or 1e-300, size=(2, t.size))
+    found = cc.observables.turning_events(t, along + back + x, y)
+    assert found.sizes["turn"] == 0

@@ -133,10 +133,70 @@ def test_every_measure_has_a_label():
 
 
 def test_what_cannot_be_drawn_is_told_in_one_line(swept, tmp_path, pretending):
-    line = cc.sweep({"r_on": [20, 30], "seed": [1]}, tmp_path / "line", InProcess())
-    with pytest.raises(cc.InputError, match="needs two parameters that differ; here r_on differs"):
-        cc.plot.diagram(line)
+    point = cc.sweep({"r_on": [20], "seed": [1, 2]}, tmp_path / "point", InProcess())
+    with pytest.raises(cc.InputError, match="needs two parameters that differ; here nothing"):
+        cc.plot.diagram(point)
+    with pytest.raises(cc.InputError, match="no run has a value of tension"):
+        cc.plot.measure_map(swept, "tension")
+    with pytest.raises(cc.InputError, match="size = 0 is out of range"):
+        cc.plot.diagram(swept, size=0)
     with pytest.raises(cc.InputError, match="did you mean 'speed'"):
         cc.plot.measure_map(swept, "sped")
-    with pytest.raises(cc.InputError, match="needs a Sweep"):
+    with pytest.raises(cc.InputError, match="sweep must be a Sweep"):
         cc.plot.diagram(tmp_path)
+
+
+def test_a_sweep_along_one_parameter_has_a_row_for_each_mode(tmp_path, pretending):
+    axes = {"r_on": [20.0, 30.0, 40.0], "seed": [1, 2, 3, 4]}
+    line = cc.sweep(axes, tmp_path / "line", InProcess())
+    assert line.can_be_drawn()
+    ax = cc.plot.diagram(line)
+    names = [label.get_text() for label in ax.get_yticklabels()]
+    assert names == ["gliding (4)", "rotational (1)", "zigzag (3)", "other (1)", "fragmented (3)"]
+    sizes = [collection.get_sizes().tolist() for collection in ax.collections]
+    assert sizes[0] == pytest.approx([4.0 * sizes[1][0]])  # four of four runs, and one
+    assert ax.get_xticks().tolist() == [20.0, 30.0, 40.0]
+    measured = cc.plot.measure_map(line, "speed")
+    assert measured.lines[0].get_ydata() == pytest.approx([0.2, 0.3, 0.4])  # without torn cells
+    assert sum(len(c.get_offsets()) for c in measured.collections) == 12
+    assert drawn(ax.figure)
+    assert drawn(measured.figure)
+
+
+def test_runs_that_ended_well_without_a_mode_are_too_short_not_failed(tmp_path, monkeypatch):
+    def pretend(run, keep):
+        short = run.parameters.r_on < 30.0
+        status = "completed" if short else "unresolved"
+        return Outcome({"status": status, "mode": None, "confidence": None})
+
+    monkeypatch.setattr(worker, "execute", pretend)
+    swept = cc.sweep({"r_on": [20, 30], "zeta_1": [500, 600]}, tmp_path / "out", InProcess())
+    found = plane(swept.table())
+    assert {name: count.tolist() for name, count in found.counts.items()} == {
+        "too short": [1, 1, 0, 0],
+        "failed": [0, 0, 1, 1],
+    }
+    labels = [text.get_text() for text in cc.plot.diagram(swept).get_legend().get_texts()]
+    assert labels == ["too short (2)", "failed (2)"]
+
+
+def test_points_spaced_in_their_logarithm_make_a_logarithmic_axis_with_ticks_at_the_points(
+    tmp_path, pretending
+):
+    values = [2.0, 6.0, 18.0, 54.0]
+    swept = cc.sweep(
+        {"r_on": values, "zeta_1": [400.0, 500.0], "seed": [1]}, tmp_path / "out", InProcess()
+    )
+    for ax in (cc.plot.diagram(swept), cc.plot.measure_map(swept, "speed")):
+        assert (ax.get_xscale(), ax.get_yscale()) == ("log", "linear")
+        assert ax.get_xticks().tolist() == values
+        assert ax.get_yticks().tolist() == [400.0, 500.0]
+        assert ax.get_xticks(minor=True).size == 0
+    sides = ax.collections[0].get_coordinates()[0, :, 0]
+    np.testing.assert_allclose(sides, [values[0] / np.sqrt(3), *np.multiply(values, np.sqrt(3))])
+
+
+@pytest.mark.parametrize("size", [2.5, 6.0])
+def test_symbols_have_the_size_that_is_asked_for(swept, size):
+    ax = cc.plot.diagram(swept, size=size)
+    assert np.sqrt(ax.collections[0].get_sizes()[0]) == pytest.approx(size)

@@ -14,6 +14,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 import cellcrawl as cc
+from tests.conftest import settings
 from tests.runs import circle_on_track, circling, straight
 
 RUN = circling(0.3, records=101)
@@ -54,19 +55,19 @@ def drawn(name: str) -> Figure:
 
 @pytest.mark.parametrize("name", [*ON_ONE_AXES, *PAGES])
 def test_pictures_are_figures_of_their_own_and_leave_the_users_settings(name):
-    before = dict(mpl.rcParams)
+    before = settings()
     figure = drawn(name)
     assert isinstance(figure, Figure)
     for suffix in ("pdf", "svg"):
         figure.savefig(io.BytesIO(), format=suffix)
-    assert dict(mpl.rcParams) == before
+    assert settings() == before
 
 
 @pytest.mark.parametrize("name", ["kymographs", "snapshots"])
-def test_the_users_settings_do_not_change_a_page(name):
-    plain = png(PAGES[name]())
+def test_settings_made_after_a_page_do_not_change_it(name):
+    plain, page = png(PAGES[name]()), PAGES[name]()
     with mpl.rc_context({"font.size": 25.0, "lines.linewidth": 9.0, "xtick.labelsize": 30.0}):
-        assert png(PAGES[name]()) == plain
+        assert png(page) == plain
 
 
 def test_pyplot_is_never_imported():
@@ -186,7 +187,7 @@ def test_panels_of_the_summary_share_their_sides_and_their_labels_stay_clear():
         (lambda: cc.plot.kymographs(RUN, origin="rear"), "must be one of 'front', 'material'"),
         (lambda: cc.plot.time_series(RUN, ["tensoin"]), "did you mean 'tension'"),
         (lambda: cc.plot.time_series(RUN, []), "quantities is empty"),
-        (lambda: cc.plot.summary(7), "not int"),
+        (lambda: cc.plot.summary(7), "dataset must be xarray.s Dataset, not 7"),
     ],
 )
 def test_mistakes_are_refused_in_one_line(draw, said):

@@ -169,7 +169,7 @@ def test_regions_of_closed_and_open_curves():
         (lambda: cc.plot.dispersion(P, zeta_1=range(20)), "1 to 12 values"),
         (lambda: cc.plot.dispersion(P, zeta_1=[3000]), "from 0 to 2000"),
         (lambda: cc.plot.dispersion(P, k_max=1), "k_max = 1"),
-        (lambda: cc.plot.stability(P), "no stability map"),
+        (lambda: cc.plot.stability(P), "stability_map must be xarray.s Dataset"),
     ],
 )
 def test_mistakes_are_one_line(draw, said):

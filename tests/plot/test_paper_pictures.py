@@ -97,9 +97,9 @@ def test_pages_draw_on_axes_given():
     axes = figure.subplots(1, 7).ravel().tolist()
     assert cc.plot.snapshots(RUN, [0.0, 5.0, 10.0], axes=axes[:3]) is figure
     assert cc.plot.kymographs(RUN, axes=axes[3:]) is figure
-    with pytest.raises(cc.InputError, match="2 axes for 1 times"):
+    with pytest.raises(cc.InputError, match="2 axes for 1: one for each time"):
         cc.plot.snapshots(RUN, [1.0], axes=axes[:2])
-    with pytest.raises(cc.InputError, match="need 4 axes"):
+    with pytest.raises(cc.InputError, match="3 axes for 4: one for each field"):
         cc.plot.kymographs(RUN, axes=axes[:3])
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from collections import Counter
@@ -15,6 +16,7 @@ import cellcrawl as cc
 from cellcrawl.locks import locked
 from cellcrawl.reproduction import reproduce
 from cellcrawl.reproduction.fig5 import period
+from cellcrawl.reproduction.fig6 import routes
 from cellcrawl.reproduction.plane import keep_table, verdicts
 from cellcrawl.reproduction.workplace import Workplace
 from tests.runs import circling
@@ -100,3 +102,17 @@ def test_a_folder_that_cannot_be_made_is_said_in_one_line(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(cc.StorageError, match="cannot write in"):
         next(reproduce(["fig2"], Path(tmp_path / "file" / "out")))
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.1])
+def test_routes_are_named_by_the_times_of_their_schedules(scale):
+    for name, schedule in routes(scale).items():
+        times = sorted({time for points in schedule.to_dict().values() for time, _ in points})
+        words = re.findall(r"[0-9.]+", name.replace("(24, 540)", ""))
+        written = [float(word) for word in words]
+        start, *rest = written
+        assert start == pytest.approx(times[0])
+        if "over" in name:
+            assert rest == pytest.approx([times[-1] - times[0]])
+        elif "abrupt" in name:
+            assert times == pytest.approx([start])

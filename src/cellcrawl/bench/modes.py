@@ -12,13 +12,18 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from cellcrawl.modes import Classification, classify, classify_track, combine
 from cellcrawl.modes.synthetic import RECIPES, synthetic_tracks
+from cellcrawl.observables import heading as heading_of
 from cellcrawl.observables import turning_events
 from cellcrawl.parameters import Parameters
 from cellcrawl.parameters.paper_cells import PAPER_MODES
+from cellcrawl.plot.edge import frame, scale_bar
+from cellcrawl.plot.labels import time_label
 from cellcrawl.plot.style import PAGE, RIM, TRACK, paper_figure
+from cellcrawl.plot.track_panels import LEFT, RIGHT
 from cellcrawl.simulation import simulate
 from cellcrawl.starts import RandomPerturbation
 
@@ -26,7 +31,7 @@ SURE = 0.9
 """A wrong name with at least this confidence is a bad mistake."""
 _TURNS_SHOWN = 0.25  # least range of a heading that is drawn, so that a straight one looks straight
 _SEEDS = (1, 2, 3, 4, 5)
-_LEFT, _RIGHT = "#d1495b", "#1f77b4"
+_SIDES = (("left", LEFT), ("right", RIGHT))
 
 
 class Kind(NamedTuple):
@@ -143,40 +148,44 @@ def _counted(found: dict[str, int]) -> str:
 
 def plot() -> Figure:
     """Draw track and heading of each named point, with the turns in colour."""
-    with paper_figure(PAGE, 7.6) as figure:
+    with paper_figure(PAGE, 6.6) as figure:
         panels = np.ravel(np.asarray(figure.subfigures(3, 3)))
-        for panel, ((r_on, zeta_1), paper) in zip(panels, PAPER_MODES.items(), strict=True):
-            run = _run(r_on, zeta_1, 1)
+        for number, (panel, point) in enumerate(zip(panels, PAPER_MODES, strict=True)):
+            run = _run(*point, 1)
             found = classify(run)
-            track, heading = panel.subplots(2, 1, height_ratios=[1.6, 1.0])
-            track.set_title(f"({r_on:g}, {zeta_1:g})  {found.mode}")
+            track, heading = panel.subplots(2, 1, height_ratios=[1.5, 1.0])
+            name = f"{found.mode}, {found.detail}" if found.detail else found.mode
+            track.set_title(f"({point[0]:g}, {point[1]:g})  {name}", loc="left")
             _draw(track, heading, run.sel(time=slice(found.measures.start, None)), run)
-            if (r_on, zeta_1) in ((16, 600), (26, 600), (40, 540)):
+            if number % 3 == 0:
                 heading.set_ylabel("heading (turns)")
-                track.set_ylabel("$y$ ($R_0$)")
-            if paper == "other" and r_on != 38:
-                heading.set_xlabel("time")
+            if number > 5:
+                heading.set_xlabel(time_label(run))
+        keys = [Line2D([], [], color=colour, label=f"turns {side}") for side, colour in _SIDES]
+        figure.legend(handles=keys, loc="outside upper right", ncols=2, frameon=False)
     return figure
 
 
 def _draw(track: Axes, heading: Axes, settled: xr.Dataset, run: xr.Dataset) -> None:
-    from cellcrawl.observables import heading as heading_of
-
-    track.plot(run["centroid_x"], run["centroid_y"], color=RIM, linewidth=0.8)
-    track.plot(run["centroid_x"][0], run["centroid_y"][0], "o", color=TRACK, markersize=2.5)
-    track.set_aspect("equal", adjustable="datalim")
-    track.margins(0.08)
+    x, y = run["centroid_x"].values, run["centroid_y"].values
+    track.plot(x, y, color=RIM, linewidth=0.8)
+    track.plot(x[0], y[0], "o", color=TRACK, markersize=2.5)
+    places = np.column_stack([x, y])
+    margin = 0.05 * np.ptp(places, axis=0).max()
+    frame(track, places.min(axis=0) - margin, places.max(axis=0) + margin, fill=True)
+    scale_bar(track, run)
     angle = heading_of(run).sel(time=settled["time"]) / (2.0 * math.pi)
     angle = angle - angle[0]
     heading.plot(angle["time"], angle, color=RIM, linewidth=0.8)
     turns = turning_events(settled)
     for start, end, sign in zip(turns["start"], turns["end"], turns["sign"], strict=True):
         part = slice(float(start), float(end))
-        colour = _LEFT if sign > 0 else _RIGHT
+        colour = LEFT if sign > 0 else RIGHT
         turn = settled.sel(time=part)
         track.plot(turn["centroid_x"], turn["centroid_y"], color=colour, linewidth=1.2)
         heading.plot(turn["time"], angle.sel(time=part), color=colour, linewidth=1.2)
     heading.set_xlim(0.0, float(run["time"][-1]))
+    heading.spines[["top", "right"]].set_visible(False)
     low, high = heading.get_ylim()
     if high - low < _TURNS_SHOWN:
         middle = 0.5 * (low + high)

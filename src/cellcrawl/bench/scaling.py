@@ -13,6 +13,7 @@ from typing import NamedTuple
 from matplotlib.figure import Figure
 
 from cellcrawl.bench.cases import Case
+from cellcrawl.plot.style import PAGE, paper_figure
 from cellcrawl.solvers import SOLVERS
 
 _STREAM = """
@@ -27,6 +28,8 @@ peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 peak /= 1024 if sys.platform != "darwin" else 1024**2
 print(seconds, peak)
 """
+
+_COLOURS = {"adaptive": "#0072b2", "paper": "#e69f00"}
 
 
 class NodeCost(NamedTuple):
@@ -78,23 +81,28 @@ def cost_of_time(quick: bool = False) -> Iterator[Stream]:
 
 def plot(nodes: list[NodeCost], streams: list[Stream]) -> Figure:
     """Draw both."""
-    figure = Figure(figsize=(7.0, 2.8), layout="constrained")
-    left, right = figure.subplots(1, 2)
-    for name in dict.fromkeys(row.solver for row in nodes):
-        rows = [row for row in nodes if row.solver == name]
-        what = "right-hand side" if name == "adaptive" else "step"
-        left.loglog(
-            [r.nodes for r in rows],
-            [r.microseconds for r in rows],
-            "o-",
-            label=f"{name}, one {what}",
-        )
-    left.set(xlabel="nodes", ylabel="time (µs)")
-    left.legend(fontsize=7)
-    right.loglog([s.t_end for s in streams], [s.seconds for s in streams], "o-", label="time (s)")
-    right.loglog(
-        [s.t_end for s in streams], [s.peak_megabytes for s in streams], "s-", label="memory (MB)"
-    )
-    right.set(xlabel="t_end")
-    right.legend(fontsize=7)
+    with paper_figure(PAGE, 2.4) as figure:
+        left, right = figure.subplots(1, 2)
+        for name in dict.fromkeys(row.solver for row in nodes):
+            rows = [row for row in nodes if row.solver == name]
+            what = "right-hand side" if name == "adaptive" else "step"
+            left.loglog(
+                [r.nodes for r in rows],
+                [r.microseconds for r in rows],
+                "o-",
+                markersize=3,
+                color=_COLOURS[name],
+                label=f"{name}, one {what}",
+            )
+        left.set(xlabel="nodes", ylabel="time (µs)")
+        ends = [s.t_end for s in streams]
+        for values, colour, style, label in (
+            ([s.seconds for s in streams], "#0072b2", "o-", "time (s)"),
+            ([s.peak_megabytes for s in streams], "#d55e00", "s-", "memory (MB)"),
+        ):
+            right.loglog(ends, values, style, markersize=3, color=colour, label=label)
+        right.set(xlabel=r"length of the run $t_\mathrm{end}$ ($1/k_\mathrm{off}^0$)")
+        for panel in (left, right):
+            panel.spines[["top", "right"]].set_visible(False)
+            panel.legend(frameon=False)
     return figure

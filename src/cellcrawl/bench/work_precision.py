@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import time
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any, NamedTuple
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -15,11 +17,19 @@ from cellcrawl.bench import rivals
 from cellcrawl.bench.cases import LAWS, LONG, POINTS, Case, errors, sampled
 from cellcrawl.bench.references import References
 from cellcrawl.bench.uniform_grid import UniformGrid
+from cellcrawl.plot.style import COLUMN, PAGE, paper_figure
 from cellcrawl.solvers import SOLVERS
 
 Solve = Callable[[], tuple[np.ndarray, int]]  # gives the values at the times, and the most nodes
 _FAST_ENOUGH = 0.3  # a run this short is repeated and its best time taken
 _REPEATS = 3
+_LOOKS = (
+    ("#0072b2", "o"),
+    ("#e69f00", "^"),
+    ("#009e73", "s"),
+    ("#d55e00", "D"),
+    ("#9467bd", "v"),
+)
 # Nodes of the uniform grid by tolerance, so that either may limit the error; where a solver is on
 # the front of error against time, its grid suits it.
 _GRIDS = {
@@ -199,28 +209,31 @@ def plot(rows: list[Row]) -> Figure:
     keys = list(dict.fromkeys((row.case, row.t_end) for row in rows))
     columns = min(len(keys), 4)
     lines = math.ceil(len(keys) / columns)
-    figure = Figure(figsize=(2.7 * columns, 2.1 * lines), layout="constrained")
-    grid = figure.subplots(lines, columns, squeeze=False, sharex=True, sharey=True)
-    axes = iter(grid.flat)
     names = list(dict.fromkeys(row.solver for row in rows))
-    for case, t_end in keys:
-        ax = next(axes)
-        for number, name in enumerate(names):
-            runs = [r for r in rows if (r.case, r.t_end, r.solver) == (case, t_end, name)]
-            ax.loglog(
-                [r.error for r in runs],
-                [r.seconds for r in runs],
-                "o^sDv"[number % 5] + "-",
-                ms=3,
-                lw=1,
-                label=name,
-            )
-        ax.set_title(f"{case}, t = {t_end:g}", fontsize=7)
-        ax.tick_params(labelsize=7)
-    for ax in list(axes):
-        ax.remove()
-    figure.supxlabel("error of length and centroid, over t = 50 to 100 where t = 100", fontsize=8)
-    figure.supylabel("time (s)", fontsize=8)
-    handles, labels = figure.axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=len(names), fontsize=8)
+    width = PAGE * columns / 4 if columns > 1 else COLUMN
+    with paper_figure(width, 1.35 * lines + 0.5) as figure:
+        grid = figure.subplots(lines, columns, squeeze=False, sharex=True, sharey=True)
+        for ax, (case, t_end) in zip(grid.flat, keys, strict=False):
+            for name, (colour, marker) in zip(names, itertools.cycle(_LOOKS), strict=False):
+                runs = [r for r in rows if (r.case, r.t_end, r.solver) == (case, t_end, name)]
+                ax.loglog(
+                    [r.error for r in runs],
+                    [r.seconds for r in runs],
+                    marker=marker,
+                    color=colour,
+                    markersize=2.2,
+                    linewidth=0.8,
+                    label=name,
+                )
+            ax.set_title(f"{case.replace(', D', chr(10) + 'D')}, $t$ = {t_end:g}", loc="left")
+            ax.spines[["top", "right"]].set_visible(False)
+        for ax in grid.flat[len(keys) :]:
+            ax.remove()
+        size = mpl.rcParams["axes.labelsize"]
+        figure.supxlabel(
+            "error of length and centroid, over $t$ = 50 to 100 where $t$ = 100", fontsize=size
+        )
+        figure.supylabel("time (s)", fontsize=size)
+        handles, labels = grid.flat[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper center", ncols=3, frameon=False)
     return figure

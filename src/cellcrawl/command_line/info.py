@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
+from cellcrawl.command_line.folders import run_in, sweep_in
 from cellcrawl.command_line.options import say
-from cellcrawl.command_line.report import report_run
+from cellcrawl.command_line.report import report_run, report_sweep
+from cellcrawl.parameters import Parameters
 from cellcrawl.simulation.dataset import decode_attribute
 from cellcrawl.simulation.events import STATUSES
+
+if TYPE_CHECKING:
+    from cellcrawl.sweeps import Sweep
 
 
 @click.command()
@@ -17,13 +23,20 @@ from cellcrawl.simulation.events import STATUSES
 def info(file: Path) -> None:
     """Say what the run in FILE holds: parameters, start, how it ended, variables.
 
+    FILE may be the folder that holds the run. Of a sweep's folder: its grid and its modes.
+
     \b
-    Example
-      cellcrawl info cellcrawl-run/run.nc
+    Examples
+      cellcrawl info cellcrawl-run
+      cellcrawl info phase_diagram
     """
     import cellcrawl as cc
 
-    with cc.open_run(file) as dataset:
+    found = sweep_in(file)
+    if found is not None:
+        _say_sweep(found)
+        return
+    with cc.open_run(run_in(file)) as dataset:
         report_run(dataset)
         attributes = dataset.attrs
         say(f"status   {attributes['status']} means: {STATUSES.get(attributes['status'], '?')}")
@@ -44,6 +57,19 @@ def info(file: Path) -> None:
             f"written by cellcrawl {attributes['cellcrawl_version']}, "
             f"schema {attributes['schema_version']}"
         )
+
+
+def _say_sweep(found: Sweep) -> None:
+    report_sweep(found)
+    grid, usual = found.grid, Parameters().to_dict()
+    shared = {
+        name: value
+        for name, value in grid.parameters.to_dict().items()
+        if value != usual[name] and name not in grid.axes
+    }
+    listed = ", ".join(f"{name} = {value}" for name, value in shared.items())
+    say(f"shared   {listed or 'the usual parameters'}, t_end = {grid.t_end:g}, {grid.solver}")
+    say(f"keeps    {found.keep}: read them with cellcrawl.open_sweep")
 
 
 def _short(value: object) -> str:

@@ -9,6 +9,7 @@ import click
 
 from cellcrawl.command_line.main import CANCELLED
 from cellcrawl.command_line.options import near, save_picture, say, wants_progress
+from cellcrawl.command_line.report import report_sweep
 from cellcrawl.errors import InputError
 
 _PICTURE = "diagram.png"
@@ -98,7 +99,7 @@ def sweep(
             say(f"note     {grid} has changed since: this is the grid that was swept")
         if collect:
             found.collect()
-        _report(found)
+        report_sweep(found)
         return _finish(found, collect and picture)
     if grid.is_dir():
         raise InputError(f"{grid} is a folder: give the grid file, or ask for its --status")
@@ -121,7 +122,7 @@ def sweep(
         made = sweeps.sweep(
             _read(grid, t_end), folder, dask, extend=extend, retry=retry, part=part, **shared
         )
-    _report(made)
+    report_sweep(made)
     if made.interrupted:
         say("stopped  the rows above are saved; the same command goes on")
         return CANCELLED
@@ -137,33 +138,6 @@ def _read(grid: Path, t_end: float | None) -> Any:
 
     settings = {} if t_end is None else {"t_end": t_end}
     return Grid.from_toml(grid, **settings)
-
-
-def _report(found: Any) -> None:
-    status = found.status()
-    say(f"grid     {found.grid.summary()}: {len(found.grid)} runs{_refined(found, status)}")
-    left = status.runs - status.done
-    at_work = ", a sweep is at work" if status.at_work else ""
-    say(f"done     {status.done}" + (f", {left} left" if left else "") + at_work)
-    if status.statuses:
-        say(f"ended    {_counted(status.statuses)}")
-    if status.modes:
-        say(f"modes    {_counted(status.modes)}")
-    for reason, count in found.failures().items():
-        say(f"failed   {count}: {reason}")
-    say(f"rows     {near(found.path / 'rows')}")
-
-
-def _refined(found: Any, status: Any) -> str:
-    full = found.full_grid_runs()
-    if full is None:
-        return ""
-    return f", refined to {status.done} of the {full} of the full grid ({status.done / full:.0%})"
-
-
-def _counted(counts: dict[str, int]) -> str:
-    ordered = sorted(counts.items(), key=lambda item: -item[1])
-    return ", ".join(f"{name} {count}" for name, count in ordered)
 
 
 def _finish(found: Any, picture: bool) -> int:

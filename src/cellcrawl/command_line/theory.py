@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 import numpy as np
 
+from cellcrawl.command_line.look import Look, look_options
 from cellcrawl.command_line.options import cannot_write, parameter_options, save_picture, say
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import DESCRIPTIONS, Parameters
@@ -38,7 +39,7 @@ def _picture_options(function: F) -> F:
         show_default=True,
         help="Resolution of a .png.",
     )
-    return output(dpi(function))
+    return output(dpi(look_options(function)))
 
 
 @click.command()
@@ -57,7 +58,12 @@ def _picture_options(function: F) -> F:
 @_picture_options
 @parameter_options(_USUAL)
 def dispersion(
-    vary: tuple[str, ...], k_max: int | None, output: Path | None, dpi: int, **parameters: Any
+    vary: tuple[str, ...],
+    k_max: int | None,
+    output: Path | None,
+    dpi: int,
+    look: Look,
+    **parameters: Any,
 ) -> None:
     """Print both growth rates of every wavenumber; with --output, draw them.
 
@@ -84,7 +90,8 @@ def dispersion(
         _print_rates(member, 20 if k_max is None else k_max)
     if output is not None:
         family: dict[str, Any] = dict(varied)
-        save_picture(plot.dispersion(cell, k_max=k_max, **family), output, dpi)
+        with look.used():
+            save_picture(plot.dispersion(cell, k_max=k_max, **family), output, dpi)
 
 
 @click.command()
@@ -119,6 +126,7 @@ def stability(
     data: Path | None,
     output: Path | None,
     dpi: int,
+    look: Look,
     **parameters: Any,
 ) -> None:
     """Say which wavenumbers grow where, over two parameters; with --output, draw the map.
@@ -147,7 +155,8 @@ def stability(
             raise cannot_write(data, error) from None
         say(f"data     {data}")
     if output is not None:
-        save_picture(figure_of(plot.stability(stability_map)), output, dpi)
+        with look.used():
+            save_picture(figure_of(plot.stability(stability_map)), output, dpi)
 
 
 def _cell(parameters: dict[str, Any]) -> Parameters:

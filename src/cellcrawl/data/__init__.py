@@ -5,11 +5,13 @@ Numpy and xarray alone: nothing here loads a solver.
 
 from cellcrawl.data.attributes import checked_attributes, decode_attribute, encode_attributes
 from cellcrawl.data.runs import (
+    SYSTEMS,
     check_run,
     checked_times,
     edge_field,
     is_dimensionless,
     records_with,
+    systems_of,
 )
 from cellcrawl.data.schema import (
     EDGE_FIELDS,
@@ -31,6 +33,7 @@ __all__ = [
     "RESUMABLE",
     "SCHEMA_VERSION",
     "STATUSES",
+    "SYSTEMS",
     "TIME",
     "TRACK_FIELDS",
     "VARIABLES",
@@ -43,4 +46,5 @@ __all__ = [
     "encode_attributes",
     "is_dimensionless",
     "records_with",
+    "systems_of",
 ]

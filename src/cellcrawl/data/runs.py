@@ -14,8 +14,10 @@ from cellcrawl.validation import real_array, shown
 
 _SLICE_RECORDS: Final = 512  # looked at together: a run on disk need not fit in memory
 _WIDEST_GAP: Final = 2.0  # spacings between neighbouring nodes ...
-_SYSTEMS: Final = ("model", "SI", "micrometres")
 _CLOSURE: Final = 0.02  # ... and of the length: the gap the paper's scheme may leave
+
+SYSTEMS: Final = ("model", "SI", "micrometres")
+"""Systems of units that a run can be in; pictures show SI in micrometres."""
 
 
 def records_with(dataset: Any, *names: str, at_least: int = 1) -> xr.Dataset:
@@ -48,7 +50,7 @@ def records_with(dataset: Any, *names: str, at_least: int = 1) -> xr.Dataset:
             f"this run has {records} records in time: at least {wanted_records} needed"
         )
     checked_times("time", dataset["time"].values)
-    _systems(dataset, ("time", *names))
+    systems_of(dataset, ("time", *names))
     for name in names:
         _check_finite(dataset[name].variable, name)
     if any(name in EDGE_FIELDS for name in names):
@@ -91,7 +93,7 @@ def checked_times(name: str, values: Any) -> np.ndarray:
 
 def is_dimensionless(dataset: xr.Dataset) -> bool:
     """Whether a run is in the model's units, by what its variables and attributes say."""
-    return "scales" not in dataset.attrs and "model" in _systems(dataset, ("time", *FIELDS))
+    return "scales" not in dataset.attrs and "model" in systems_of(dataset, ("time", *FIELDS))
 
 
 def _check_variable(dataset: xr.Dataset, name: str) -> None:
@@ -113,15 +115,15 @@ def _check_variable(dataset: xr.Dataset, name: str) -> None:
         raise InputError(f"{name!r} holds {variable.dtype}, not numbers: is it a cellcrawl run?")
 
 
-def _systems(dataset: xr.Dataset, names: tuple[str, ...]) -> set[str]:
+def systems_of(dataset: xr.Dataset, names: tuple[str, ...]) -> set[str]:
     """Return the systems of units that all variables there are may be in, or raise `InputError`."""
-    possible, told = set(_SYSTEMS), ""
+    possible, told = set(SYSTEMS), ""
     for name in names:
         if name not in dataset.variables:
             continue
         model = TIME.units if name == "time" else FIELDS[name].units
         given = dataset[name].attrs.get("units", "")
-        labels = dict(zip(_SYSTEMS, (model, *DIMENSIONAL.get(model, (model, model))), strict=True))
+        labels = dict(zip(SYSTEMS, (model, *DIMENSIONAL.get(model, (model, model))), strict=True))
         fitting = {system for system, label in labels.items() if given in (label, "")}
         if not fitting:
             known = ", ".join(repr(label) for label in dict.fromkeys(labels.values()))
@@ -131,7 +133,7 @@ def _systems(dataset: xr.Dataset, names: tuple[str, ...]) -> set[str]:
                 f"{name!r} is in {given!r} but {told}: put all into one system, as "
                 "Scales.dataset does"
             )
-        if fitting != set(_SYSTEMS):
+        if fitting != set(SYSTEMS):
             told = told or f"{name!r} is in {given!r}"
         possible &= fitting
     return possible

@@ -14,10 +14,12 @@ from cellcrawl.modes import rule
 from cellcrawl.modes.confidence import trust
 from cellcrawl.modes.evidence import Evidence, gather
 from cellcrawl.modes.measures import measure, measure_rest, onset
-from cellcrawl.modes.result import Classification, Measures
+from cellcrawl.modes.result import STEADY_SPIN, Classification, Measures
 from cellcrawl.observables.inputs import records_with
 from cellcrawl.observables.smoothing import SmoothTrack, smooth
 from cellcrawl.observables.track import Track, as_track
+from cellcrawl.simulation.events import STATUSES
+from cellcrawl.simulation.units import units_of
 from cellcrawl.validation import real_number
 
 FEWEST_RECORDS = 12
@@ -29,6 +31,8 @@ _LATER_STARTS = (0.0, 1 / 9, 2 / 9, 3 / 9)
 _SHORT, _LONG = 24, 60  # records up to which none of these, and only the last, is tried
 _PREFER_EARLY = 0.3  # a start that leaves out the part p must fit better by this times p
 _FEW_TURNS = 3  # a track that has turned less often, and less than once round, may be any mode
+_CUT_SHORT = 0.5  # the confidence that a run which failed can have
+_FAILURES = tuple(set(STATUSES) - {"completed", "fragmented", "interrupted", "running"})
 
 
 @checked
@@ -58,14 +62,16 @@ def classify(dataset: xr.Dataset, *, use_size: bool = True) -> Classification:
     -----
     The modes are those of a cell left to itself: a schedule that changes parameters on the way
     makes a track with several modes, which is "other". A run of less than about 50 may not have
-    come to its mode. A run that ended for another reason than its time is named by what there is.
+    come to its mode. A run that a failure ended (outside the model, or unresolved) is named by what
+    there is, says so in ``doubt``, and its confidence is at most 0.5.
     """
     run = records_with(dataset, "centroid_x", "centroid_y", "area")
     if run.attrs.get("status") == "fragmented":
         return _fragmented()
     track = as_track(run, at_least=FEWEST_RECORDS)
     radius = math.sqrt(float(np.median(run["area"].values)) / math.pi)
-    return _classify(track, radius if use_size else None)
+    found = _classify(track, radius if use_size else None)
+    return _ended(found, str(run.attrs.get("status", "completed")), float(track.t[-1]))
 
 
 @checked
@@ -83,7 +89,8 @@ def classify_track(
         outline is "other" and one that moves less than a twentieth of it is "stationary"; without
         it only the form of the track counts.
     status : str
-        How the run ended, as in a Dataset's attributes: "fragmented" is a mode of its own.
+        How the run ended, as in a Dataset's attributes: "fragmented" is a mode of its own, and one
+        that says it failed lowers the confidence to 0.5 at most.
 
     Returns
     -------
@@ -106,14 +113,16 @@ def classify_track(
         return _fragmented()
     if cell_radius is not None:
         real_number("cell_radius", cell_radius, 0.0, math.inf, open_low=True)
-    return _classify(as_track(t, x, y, at_least=FEWEST_RECORDS), cell_radius)
+    track = as_track(t, x, y, at_least=FEWEST_RECORDS)
+    return _ended(_classify(track, cell_radius), status, float(track.t[-1]))
 
 
 @checked
 def is_long_enough(dataset: xr.Dataset) -> bool:
     """Whether a run of the model lasts `SHORTEST_RUN` and has the records to show its mode."""
-    times = dataset["time"].values
-    return times.size >= FEWEST_RECORDS and float(times[-1] - times[0]) >= SHORTEST_RUN
+    times, one = dataset["time"].values, units_of(dataset).one("time")
+    long = float(times[-1] - times[0]) >= SHORTEST_RUN * (one if math.isfinite(one) else 0.0)
+    return times.size >= FEWEST_RECORDS and long
 
 
 def _classify(track: Track, cell_radius: float | None) -> Classification:
@@ -150,7 +159,7 @@ def _with_size(named: Classification, cell_radius: float) -> Classification:
         return replace(named, confidence=sure, doubt=doubt, memberships=fits)
     sure = 1.0 - named.confidence * wide.fit
     doubt = _joined(f"not rotational: {wide.words}", named.doubt)
-    return Classification("other", sure, fits, named.measures, doubt)
+    return Classification("other", sure, fits, named.measures, doubt, STEADY_SPIN)
 
 
 def _told_of(wild: tuple[int, ...], track: Track) -> str:
@@ -189,6 +198,15 @@ def name_by_rule(smoothed: SmoothTrack) -> tuple[Classification, Evidence]:
     )
     best = replace(best, measures=seen)
     return best, gather(smoothed, seen, still, best.memberships)
+
+
+def _ended(found: Classification, status: str, time: float) -> Classification:
+    """Return the result with what it is worth if a failure ended the run: it saw a beginning."""
+    if status not in _FAILURES:
+        return found
+    words = f"the run ended {status} at t = {time:.4g}"
+    doubt = "; ".join(part for part in (words, found.doubt) if part)
+    return replace(found, confidence=min(found.confidence, _CUT_SHORT), doubt=doubt)
 
 
 def _score(result: Classification, later: float) -> float:

@@ -11,6 +11,11 @@ from cellcrawl.records import EqualWithNaN
 MODES: Final = ("gliding", "rotational", "zigzag", "other", "stationary", "fragmented")
 """Modes of a single run; a set of runs can also be "mixed"."""
 
+STEADY_SPIN: Final = "steady spin"
+DETAILS: Final = ("", STEADY_SPIN)
+"""Finer words beside a mode. A cell in a steady spin turns to one side all the time, as a rotating
+one does, but within its own outline: the paper calls it "other"."""
+
 
 @dataclass(frozen=True, eq=False)
 class Measures(EqualWithNaN):
@@ -104,6 +109,8 @@ class Classification(EqualWithNaN):
     doubt : str
         The condition that holds least and, of an answer that is not sure, what speaks against it,
         in words; "" if all hold fully.
+    detail : str
+        A finer word beside the mode, one of `DETAILS`; "" if there is none.
     """
 
     mode: str
@@ -111,11 +118,12 @@ class Classification(EqualWithNaN):
     memberships: dict[str, float]
     measures: Measures
     doubt: str
+    detail: str = ""
 
     def as_row(self) -> dict[str, Any]:
         """Return mode, confidence and measures as one flat row of a table."""
         row = {"mode": self.mode, "confidence": self.confidence, **asdict(self.measures)}
-        return {**row, "doubt": self.doubt}
+        return {**row, "doubt": self.doubt, "detail": self.detail}
 
     def summary(self, *, y_down: bool = False) -> str:
         """Return what the mode was seen by, in a few words.
@@ -137,5 +145,8 @@ class Classification(EqualWithNaN):
             case "zigzag":
                 swing = f"{seen.swings} swings of {math.degrees(seen.swing):.0f} degrees"
                 return f"{swing}, left and right in {seen.period:.3g}"
+            case "other" if self.detail == STEADY_SPIN:
+                period = 2.0 * math.pi / abs(seen.turning_rate)
+                return f"spins to the {side} on the spot, once round in {period:.3g}"
             case _:
                 return ""

@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from cellcrawl.arguments import file_path
+from cellcrawl.arguments import checked, file_path
 from cellcrawl.errors import InputError, StorageError
+from cellcrawl.movies.notebook import MovieFile
 from cellcrawl.movies.scene import Scene
-from cellcrawl.movies.timing import frame_records
+from cellcrawl.movies.timing import frame_records, gif_times
 from cellcrawl.movies.writers import encoder, write_gif, write_mp4
 from cellcrawl.observables.inputs import edge_field
 from cellcrawl.plot.inputs import drawable
@@ -26,6 +27,7 @@ _USUAL_SIZE = {".mp4": (960, 720), ".gif": (480, 360)}
 _SMALLEST, _LARGEST = 64, 4096
 
 
+@checked
 def movie(
     dataset: xr.Dataset,
     path: str | Path,
@@ -36,9 +38,10 @@ def movie(
     view: str = "follow",
     field: str = "bound_fraction",
     limits: Limits | None = None,
+    colormap: str | None = None,
     size: tuple[int, int] | None = None,
     progress: bool = False,
-) -> Path:
+) -> MovieFile:
     """Film a run: the cell coloured by a field, the track of its centroid, the time.
 
     Parameters
@@ -49,8 +52,9 @@ def movie(
         ``cell.mp4`` (H.264) or ``cell.gif``. Written under another name beside it and renamed
         when complete; a file that is there is replaced.
     fps : float
-        Frames a second, from 0.1 to 120. In a GIF the time between frames is a whole number of
-        hundredths of a second, at least two.
+        Frames a second, from 0.1 to 120. A GIF counts in hundredths of a second and shows no frame
+        for less than two: there frames last longer and shorter in turn, and at more than 50 a
+        second some are left out, so that the movie takes as long as it should.
     seconds : float, optional
         Length of the movie.
     every : float, optional
@@ -62,6 +66,8 @@ def movie(
         The field on the edge that colours it.
     limits : (float, float), optional
         Ends of the colour scale; the field's own unless given.
+    colormap : str, optional
+        A colour map of matplotlib's; the field's own unless given.
     size : (int, int), optional
         Width and height in pixels, even for MP4; (960, 720), for GIF (480, 360), unless given.
     progress : bool
@@ -70,7 +76,7 @@ def movie(
     Returns
     -------
     Path
-        Where the movie is.
+        Where the movie is; in a notebook it appears.
 
     Raises
     ------
@@ -96,14 +102,17 @@ def movie(
     records = frame_records(run["time"].values, rate, seconds, every)
     if suffix == ".mp4":
         encoder()
-    scene = Scene(run, records, field, limits, view, pixels)
+    else:
+        shown, durations = gif_times(records.size, rate)
+        records = records[shown]
+    scene = Scene(run, records, field, limits, view, pixels, colormap)
     with _renamed_when_complete(target) as unfinished:
         frames = _frames(scene, records.size, progress)
         if suffix == ".mp4":
             write_mp4(unfinished, frames, pixels, rate)
         else:
-            write_gif(unfinished, frames, rate)
-    return target
+            write_gif(unfinished, frames, durations)
+    return MovieFile(target)
 
 
 def _frames(scene: Scene, count: int, progress: bool) -> Iterator[np.ndarray]:

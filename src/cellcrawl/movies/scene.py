@@ -10,21 +10,23 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from matplotlib.text import Text
 
-from cellcrawl.plot.edge import rim, round_length, segments
-from cellcrawl.plot.scales import SCALES, Limits, extend_for, norm_for, ticks_for
-from cellcrawl.plot.style import BODY, INK, STYLE, TRACK
+from cellcrawl.plot.colouring import Colouring, colouring
+from cellcrawl.plot.edge import length_text, rim, round_length, segments
+from cellcrawl.plot.labels import time_text
+from cellcrawl.plot.scales import Limits, extend_for, ticks_for
+from cellcrawl.plot.style import BODY, GUIDE, INK, STYLE, TRACK, house_style, on
 
 _PIXELS_A_PIECE = 3.5  # an edge is thinned until its pieces are about this long on the screen
 _DPI_OF_480_LINES = 110.0  # text and lines grow with the smaller side of the picture
 _STRIP = 0.13  # of the height, below the view: time, scale bar, colour bar
 _MIDDLE = 0.62  # of the strip
 _ROOM = 2.1  # half the view of a camera that follows, in cell radii
-_LIGHT = "#d9d9d9"
+_FAINT = 0.35  # of the colour of guides, for the grid
+_TEXT, _SMALL = 10.0, 8.5  # sizes at the house's font size
 
 
 class Scene:
@@ -44,6 +46,8 @@ class Scene:
         The camera stays with the cell, or shows the whole path.
     size : (int, int)
         Width and height in pixels.
+    colormap : str, optional
+        Another colour map than the field's own.
     """
 
     def __init__(
@@ -54,21 +58,23 @@ class Scene:
         limits: Limits | None,
         view: str,
         size: tuple[int, int],
+        colormap: str | None = None,
     ) -> None:
         shown = dataset.isel(time=records)
         self._points = np.stack([shown["x"].values, shown["y"].values], axis=-1)
         self._values = shown[field].values
         self._longest = float(shown["length"].values.max())
         self._records = records
-        self._field = field
+        self._run = shown
+        self._colours = colouring(shown, field, self._values, limits, colormap)
         self._follows = view == "follow"
         self._track = np.column_stack([dataset["centroid_x"].values, dataset["centroid_y"].values])
         self._times = shown["time"].values
         self._digits = _digits(dataset["time"].values)
-        with mpl.rc_context(STYLE):
-            self._build(size, limits)
+        with mpl.rc_context(house_style()):
+            self._build(size)
 
-    def _build(self, size: tuple[int, int], limits: Limits | None) -> None:
+    def _build(self, size: tuple[int, int]) -> None:
         dpi = _DPI_OF_480_LINES * min(size) / 480.0
         figure = Figure(figsize=(size[0] / dpi, size[1] / dpi), dpi=dpi)
         canvas: Any = FigureCanvasAgg(figure)
@@ -79,26 +85,27 @@ class Scene:
         strip.set_axis_off()
         view = np.array([size[0], size[1] * (1.0 - _STRIP)])
         self._frame(view)
-        values = self._values
-        norm = norm_for(self._field, values, limits)
-        self._grid = LineCollection([], colors=_LIGHT, linewidths=0.6, zorder=0)
+        guide = on(self._ax, GUIDE)
+        self._grid = LineCollection([], colors=guide, alpha=_FAINT, linewidths=0.6, zorder=0)
         self._line = self._ax.plot([], [], color=TRACK, linewidth=1.2, zorder=1)[0]
         self._dot = self._ax.plot([], [], "o", color=TRACK, markersize=3.0, zorder=4)[0]
-        self._body = Polygon(np.zeros((3, 2)), facecolor=BODY, alpha=0.8, zorder=2)
+        self._body = Polygon(np.zeros((3, 2)), facecolor=on(self._ax, BODY), alpha=0.8, zorder=2)
         self._edge = LineCollection(
             [],
-            cmap=SCALES[self._field].colormap,
-            norm=norm,
+            cmap=self._colours.colormap,
+            norm=self._colours.norm,
             linewidths=2.2,
             capstyle="round",
             zorder=3,
         )
         self._ax.add_collection(self._grid, autolim=False)
         self._ax.add_patch(self._body)
-        self._rim = rim(np.zeros((3, 2)), self._field, 2.2, 3)
+        self._rim = rim(self._ax, np.zeros((3, 2)), self._colours, 2.2, 3)
         self._ax.add_patch(self._rim)
         self._ax.add_collection(self._edge, autolim=False)
-        self._clock = _clock(strip)
+        grown = float(mpl.rcParams["font.size"]) / STYLE["font.size"]
+        self._last = float(self._times[-1])
+        self._clock, free_from = self._add_clock(strip, _TEXT * grown)
         self._stride = self._thinning(size[0])
         pieces = len(range(0, self._points.shape[1], self._stride))
         self._edge.set_segments(list(np.zeros((pieces, 3, 2))))
@@ -113,8 +120,8 @@ class Scene:
         ]
         for artist in self._moving:
             artist.set_animated(True)
-        free_from = _scale_bar(strip, float(self._reach[0]))
-        self._add_colour_bar(figure, values, norm, free_from)
+        free_from = self._add_scale_bar(strip, free_from, _SMALL * grown)
+        self._add_colour_bar(figure, self._colours, free_from, _SMALL * grown)
         canvas.draw()
         self._background = canvas.copy_from_bbox(figure.bbox)
 
@@ -139,23 +146,71 @@ class Scene:
         pixels_a_node = self._longest * per_unit / self._points.shape[1]
         return max(1, round(float(_PIXELS_A_PIECE / pixels_a_node)))
 
-    def _add_colour_bar(
-        self, figure: Figure, values: np.ndarray, norm: Normalize, free_from: float
-    ) -> None:
-        scale = SCALES[self._field]
-        box = figure.add_axes((0.66, 0.52 * _STRIP, 0.31, 0.2 * _STRIP))
-        bar = figure.colorbar(
-            self._edge, cax=box, orientation="horizontal", extend=extend_for(norm, values)
+    def _add_clock(self, ax: Axes, size: float) -> tuple[Text, float]:
+        """Write ``t =`` and the unit once, and return the text between them, empty yet.
+
+        Mathematics is slow to set. Also return, of the width, where the text ends.
+        """
+        latest = f"{self._last:.{self._digits}f}"
+        place: Any = {"transform": ax.transAxes, "va": "center_baseline", "size": size}
+        name = ax.text(0.03, _MIDDLE, "$t$ =", **place)
+        clock = ax.text(_end(name) + 0.01, _MIDDLE, latest, ha="left", **place)
+        unit = time_text(self._run, 0.0, ".0f")[1:]
+        after = _end(clock) + (0.008 if unit.startswith(" ") else 0.0)
+        unit_text = ax.text(after, _MIDDLE, unit.strip(), **place)
+        clock.set_position((_end(clock), _MIDDLE))
+        clock.set_horizontalalignment("right")  # against the unit
+        clock.set_text("")
+        return clock, _end(unit_text)
+
+    def _add_scale_bar(self, ax: Axes, free_from: float, size: float) -> float:
+        """Draw a bar of a round length on the strip, which is as wide as the view.
+
+        Return, of the width, where its text ends.
+        """
+        reach = float(self._reach[0])
+        length = round_length(0.3 * reach)
+        low = free_from + 0.04
+        high = low + length / (2.0 * reach)
+        ink = on(self._ax, INK)
+        ax.plot([low, high], [_MIDDLE, _MIDDLE], color=ink, lw=1.6, transform=ax.transAxes)
+        text = ax.text(
+            high + 0.015,
+            _MIDDLE,
+            length_text(self._run, length),
+            transform=ax.transAxes,
+            va="center",
+            size=size,
         )
-        ticks = ticks_for(norm)
+        return _end(text)
+
+    def _add_colour_bar(
+        self, figure: Figure, colours: Colouring, free_from: float, size: float
+    ) -> None:
+        """Draw the colour bar at the right, with as much of its label as there is room for."""
+        left, right = 0.66, 0.97
+        box = figure.add_axes((left, 0.52 * _STRIP, right - left, 0.2 * _STRIP))
+        bar = figure.colorbar(
+            self._edge,
+            cax=box,
+            orientation="horizontal",
+            extend=extend_for(colours.norm, self._values),
+        )
+        ticks = ticks_for(colours.norm)
         if ticks is not None:
             bar.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks])
             box.minorticks_off()
+        away = -0.09 if bar.extend in ("min", "both") else -0.03  # an arrow stands out
         label = box.text(
-            -0.03, 0.5, scale.label, transform=box.transAxes, ha="right", va="center", size=8.5
+            away, 0.5, colours.label, transform=box.transAxes, ha="right", va="center", size=size
         )
-        if label.get_window_extent().x0 < 1.03 * free_from:
-            label.set_text(scale.short_label)
+        start = free_from + 0.03
+        if _start(label, figure) < start:
+            label.set_text(colours.short_label)
+        missing = start - _start(label, figure)
+        if missing > 0.0:  # the bar gives way
+            left = min(left + missing, right - 0.12)
+            box.set_position((left, 0.52 * _STRIP, right - left, 0.2 * _STRIP))
 
     def draw(self, frame: int) -> np.ndarray:
         """Return the picture of a frame, shape (height, width, 4), 8 bits each.
@@ -195,24 +250,15 @@ class Scene:
         return lines
 
 
-def _clock(ax: Axes) -> Text:
-    """Write ``t =`` once and return the text after it, empty yet; mathematics is slow to set."""
-    name = ax.text(0.03, _MIDDLE, "$t$ =", transform=ax.transAxes, va="center_baseline", size=10)
-    after = name.get_window_extent().transformed(ax.transAxes.inverted()).x1 + 0.01
-    return ax.text(after, _MIDDLE, "", transform=ax.transAxes, va="center_baseline", size=10)
+def _end(text: Text) -> float:
+    """Return where a text ends, of the width of its axes."""
+    assert text.axes is not None
+    return float(text.get_window_extent().transformed(text.axes.transAxes.inverted()).x1)
 
 
-def _scale_bar(ax: Axes, reach: float) -> float:
-    """Draw a bar of a round length on the strip, which is as wide as the view, 2 ``reach``.
-
-    Returns the pixel at which its text ends.
-    """
-    size = round_length(0.35 * reach)
-    low, high = 0.2, 0.2 + size / (2.0 * reach)
-    ax.plot([low, high], [_MIDDLE, _MIDDLE], color=INK, lw=1.6, transform=ax.transAxes)
-    label = f"{size:g} $R_0$"
-    text = ax.text(high + 0.015, _MIDDLE, label, transform=ax.transAxes, va="center", size=8.5)
-    return float(text.get_window_extent().x1)
+def _start(text: Text, figure: Figure) -> float:
+    """Return where a text begins, of the width of the figure."""
+    return float(text.get_window_extent().x0 / figure.bbox.width)
 
 
 def _digits(times: np.ndarray) -> int:

@@ -9,6 +9,7 @@ from cellcrawl.validation import real_number
 
 _USUAL_SECONDS = 10.0
 _MOST_FRAMES = 100_000
+_SHORTEST_IN_GIF = 2  # hundredths of a second
 
 
 def frame_records(
@@ -37,6 +38,23 @@ def frame_records(
         stride = max(1, round((times.size - 1) / (_USUAL_SECONDS * fps)))
         records = np.arange(0, times.size, stride)
     return records if records[-1] == times.size - 1 else np.append(records, times.size - 1)
+
+
+def gif_times(frames: int, fps: float) -> tuple[np.ndarray, list[int]]:
+    """Return which frames a GIF shows and for how many milliseconds each.
+
+    A GIF counts in hundredths of a second, and players slow down frames of less than two: each
+    frame that is shown begins at the hundredth nearest its time, and the last ends at the nearest.
+    """
+    begins = np.rint(np.arange(frames + 1) * 100.0 / fps).astype(int)
+    shown = [0]
+    for frame in range(1, frames):
+        if begins[frame] - begins[shown[-1]] >= _SHORTEST_IN_GIF:
+            shown.append(frame)
+    shown[-1] = frames - 1  # the last record is always the last frame
+    starts = begins[[0, *shown[1:]]]
+    ends = np.append(starts[1:], max(begins[frames], starts[-1] + _SHORTEST_IN_GIF))
+    return np.array(shown), (10 * (ends - starts)).tolist()
 
 
 def _allowed(frames: float) -> int:

@@ -6,7 +6,7 @@ import contextlib
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -60,8 +60,11 @@ def write_mp4(path: Path, frames: Iterable[np.ndarray], size: tuple[int, int], f
             raise StorageError(f"the movie could not be encoded: {reason}")
 
 
-def write_gif(path: Path, frames: Iterable[np.ndarray], fps: float) -> None:
-    """Write frames, shape (height, width, 4), as a GIF that repeats; all share one palette."""
+def write_gif(path: Path, frames: Iterable[np.ndarray], durations: Sequence[int]) -> None:
+    """Write frames, shape (height, width, 4), as a GIF that repeats; all share one palette.
+
+    ``durations`` are in milliseconds, one for each frame.
+    """
     images = _palette_images(iter(frames))
     first = next(images)
     with path.open("wb") as file:
@@ -70,7 +73,7 @@ def write_gif(path: Path, frames: Iterable[np.ndarray], fps: float) -> None:
             format="GIF",
             save_all=True,
             append_images=images,
-            duration=max(20, 10 * round(100.0 / fps)),
+            duration=list(durations),
             loop=0,
             optimize=False,
         )

@@ -63,7 +63,7 @@ def mean_distance(run: Any, x: Any = None, y: Any = None, *, after: float | None
     Returns
     -------
     float
-        In R_0 for a run.
+        In the units of the run or track: R_0 for a run without dimension.
 
     Raises
     ------

@@ -10,7 +10,6 @@ import xarray as xr
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.observables.inputs import EDGE_FIELDS, records_with
-from cellcrawl.simulation.dataset import FIELDS
 from cellcrawl.validation import one_of, real_array
 
 _OF_THE_ANGLE = (*(name for name in EDGE_FIELDS if name not in ("x", "y", "theta")), "radius")
@@ -74,7 +73,7 @@ def fourier_amplitude(dataset: xr.Dataset, field: str, k: Any) -> xr.DataArray:
     amplitudes = np.stack(
         [np.sum(weights * np.exp(-1j * wave * angle), axis=1) for wave in wavenumbers], axis=1
     )
-    unit = "R_0" if field == "radius" else FIELDS[field].units
+    unit = (run["x"] if field == "radius" else run[field]).attrs.get("units", "")
     return xr.DataArray(
         amplitudes,
         {"time": run["time"], "k": wavenumbers.astype(int)},

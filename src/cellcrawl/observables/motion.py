@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,8 @@ import xarray as xr
 
 from cellcrawl.arguments import checked
 from cellcrawl.observables.inputs import records_with
-from cellcrawl.observables.track import Track, as_track, units_of
+from cellcrawl.observables.track import Track, as_track
+from cellcrawl.simulation.units import units_of
 
 AT_REST = 1e-6
 """A cell slower than this fraction of the run's highest speed has no heading."""
@@ -35,7 +37,7 @@ def centroid_velocity(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
     Returns
     -------
     DataArray, dims (time, component)
-        Components "x" and "y", in R_0 k_off0.
+        Components "x" and "y"; of a run in R_0 k_off0, or in SI if the run is.
 
     Raises
     ------
@@ -67,7 +69,7 @@ def centroid_velocity(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
         {"time": run["time"], "component": ["x", "y"]},
         ("time", "component"),
         "centroid_velocity",
-        {"long_name": "velocity of the centroid", "units": "R_0 k_off0"},
+        {"long_name": "velocity of the centroid", "units": units_of(run).label("velocity")},
     )
 
 
@@ -85,7 +87,7 @@ def speed(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
     Returns
     -------
     DataArray, dims (time,)
-        In R_0 k_off0.
+        Of a run in R_0 k_off0, or in SI if the run is.
 
     Raises
     ------
@@ -135,7 +137,7 @@ def heading(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
     """
     measured = centroid_velocity(run, x, y)
     velocity = measured.values
-    moving = _is_moving(_size(velocity))
+    moving = _is_moving(_size(velocity), _rounding(run))
     angle = np.full(moving.shape, np.nan)
     angle[moving] = np.unwrap(np.arctan2(velocity[moving, 1], velocity[moving, 0]))
     attributes = {"long_name": "heading of the centroid", "units": "rad"}
@@ -156,8 +158,8 @@ def turning_rate(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
     Returns
     -------
     DataArray, dims (time,)
-        In rad k_off0; central differences in time, one-sided at the ends. NaN next to records
-        without a heading.
+        Of a run in rad k_off0, or in SI if the run is; central differences in time, one-sided at
+        the ends. NaN next to records without a heading.
 
     Raises
     ------
@@ -173,10 +175,7 @@ def turning_rate(run: Any, x: Any = None, y: Any = None) -> xr.DataArray:
         records_with(run, at_least=2)
     angle = heading(run, x, y)
     rate = np.gradient(angle.values, angle["time"].values)
-    units = ""
-    if isinstance(run, xr.Dataset):
-        time = units_of(run)[1]
-        units = "rad k_off0" if time == "1/k_off0" else f"rad/{time}" if time else ""
+    units = units_of(run).label("angular_velocity") if isinstance(run, xr.Dataset) else ""
     return (
         angle.copy(data=rate)
         .rename("turning_rate")
@@ -206,7 +205,15 @@ def _size(velocity: np.ndarray) -> np.ndarray:
     return size
 
 
-def _is_moving(speeds: np.ndarray) -> np.ndarray:
+def _rounding(run: Any) -> float:
+    """Return the speed below which a run's velocity is rounding, in the units of the run."""
+    if not isinstance(run, xr.Dataset):
+        return _ROUNDING
+    one = units_of(run).one("velocity")
+    return _ROUNDING * one if math.isfinite(one) else 0.0
+
+
+def _is_moving(speeds: np.ndarray, rounding: float) -> np.ndarray:
     """Whether each speed, shape (time,), is enough to have a direction."""
-    moving: np.ndarray = speeds > max(AT_REST * float(np.max(speeds)), _ROUNDING)
+    moving: np.ndarray = speeds > max(AT_REST * float(np.max(speeds)), rounding)
     return moving

@@ -10,9 +10,10 @@ import xarray as xr
 from cellcrawl.errors import InputError
 from cellcrawl.microscopy.track import Track
 from cellcrawl.observables.inputs import records_with
+from cellcrawl.simulation.units import units_of
 from cellcrawl.validation import real_array, without_masked
 
-__all__ = ["Track", "as_track", "units_of"]
+__all__ = ["Track", "as_track"]
 
 
 def as_track(run: Any, x: Any = None, y: Any = None, *, at_least: int = 2) -> Track:
@@ -61,14 +62,8 @@ def _track_of(run: xr.Dataset, at_least: int) -> Track:
     t, x, y = (
         real_array(name, run[name].values, (None,)) for name in ("time", "centroid_x", "centroid_y")
     )
-    return Track(t, x, y, *units_of(run))
-
-
-def units_of(run: xr.Dataset) -> tuple[str, str]:
-    """Return the units of length and time: the model's, or those of outlines."""
-    if run.attrs.get("kind") == "outlines":
-        return str(run.attrs.get("length_units", "")), str(run.attrs.get("time_units", ""))
-    return "R_0", "1/k_off0"
+    units = units_of(run)
+    return Track(t, x, y, length_units=units.label("length"), time_units=units.label("time"))
 
 
 def _positions(name: str, values: Any, size: int) -> np.ndarray:

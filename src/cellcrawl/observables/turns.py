@@ -17,6 +17,7 @@ from cellcrawl.validation import real_number
 SMALLEST_TURN = math.radians(20.0)
 """Changes of heading smaller than this are no turns, unless said otherwise."""
 _FEWEST = 8
+_AT_REST = 0.05  # of the median of the higher speeds
 _TURNING = 0.5  # a cell turns while it turns faster than this fraction of its root mean square
 
 
@@ -53,15 +54,18 @@ def turning_events(
     Notes
     -----
     The yardstick is the track's own turning rate, so turns need not be sharp in any absolute sense;
-    a cell on a circle makes one turn that lasts as long as the track. Before a cell crawls its
-    heading is that of its ruffles: leave the transient out. Noisy tracks are smoothed as little as
+    a cell on a circle makes one turn that lasts as long as the track. A cell that rests at the
+    beginning or at the end (slower than a twentieth of its usual speed) has no
+    heading then and makes no turn; while it begins to crawl its heading is that of its ruffles:
+    leave the transient out. Noisy tracks are smoothed as little as
     their noise asks for, so that turns shorter than the smoothing are lost, and a reversal (the
     heading jumps by pi) counts as a turn to a side that chance decides.
     """
     real_number("smallest", smallest, 0.0, math.inf, open_low=True)
     track = as_track(run, x, y, at_least=_FEWEST)
     smoothed = smooth(track)
-    heading, times = smoothed.heading, smoothed.t
+    crawls = _crawling(smoothed.speed)
+    heading, times = smoothed.heading[crawls], smoothed.t[crawls]
     change = np.diff(heading)
     way = np.sign(change) * (np.abs(change) > _TURNING * math.sqrt(float(np.mean(change**2))))
     bounds = np.flatnonzero(np.diff(way)) + 1
@@ -81,6 +85,15 @@ def turning_events(
             "sign": ("turn", np.sign(turned).astype(int), {"long_name": "+1 left, -1 right"}),
         }
     )
+
+
+def _crawling(speed: np.ndarray) -> slice:
+    """Return the records between a rest at the beginning and one at the end."""
+    fast = speed >= 0.5 * float(speed.max())
+    moves = np.flatnonzero(speed >= _AT_REST * float(np.median(speed[fast])))
+    if moves[-1] - moves[0] < 1:
+        return slice(None)
+    return slice(int(moves[0]), int(moves[-1]) + 1)
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,9 +2,12 @@
 
 Each function takes a run, a sweep, or for linear theory a cell or a map, and returns the Axes or
 the Figure it drew; saving is the caller's: ``plot.path(ds).figure.savefig("path.pdf")``. Where one
-axes is enough, ``ax`` draws on your own.
-Nothing is shown, and neither pyplot nor your settings are touched. A field has the same colours in
-every picture and movie.
+axes is enough, ``ax`` draws on your own. In a notebook the picture appears, and where pyplot is
+loaded its ``show`` shows it; without pyplot nothing is opened.
+
+The house style leaves alone what you have set in ``matplotlib.rcParams``; `styled` sets width, font
+size, colour map and any other of them for a while. A field has the same colours in every picture
+and movie, and units are those of the data.
 """
 
 from cellcrawl.plot.cell import cell, snapshots
@@ -14,8 +17,9 @@ from cellcrawl.plot.dispersion import dispersion
 from cellcrawl.plot.flat_edge import flat_edge
 from cellcrawl.plot.growth import growth
 from cellcrawl.plot.kymograph import kymograph, kymographs
-from cellcrawl.plot.path import path
+from cellcrawl.plot.path import path, paths
 from cellcrawl.plot.stability import stability
+from cellcrawl.plot.style import styled
 from cellcrawl.plot.summary import summary
 from cellcrawl.plot.time_series import time_series
 from cellcrawl.plot.tracks import compare_tracks, tracks
@@ -33,9 +37,11 @@ __all__ = [
     "kymographs",
     "measure_map",
     "path",
+    "paths",
     "regimes",
     "snapshots",
     "stability",
+    "styled",
     "summary",
     "time_series",
     "tracks",

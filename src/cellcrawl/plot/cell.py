@@ -9,14 +9,14 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from cellcrawl.errors import InputError
+from cellcrawl.arguments import checked
 from cellcrawl.observables import centroid_velocity
 from cellcrawl.observables.inputs import edge_field
+from cellcrawl.plot.colouring import Colouring, colour_bar, colouring
 from cellcrawl.plot.edge import (
-    colour_bar,
+    arrow_time,
     draw_cell,
     draw_velocity,
     edge_points,
@@ -25,19 +25,32 @@ from cellcrawl.plot.edge import (
     scale_bar,
 )
 from cellcrawl.plot.inputs import drawable, record_at, records_at
-from cellcrawl.plot.scales import Limits, norm_for
-from cellcrawl.plot.style import COLUMN, INK, PAGE, axes_or_new, figure_of, paper_figure
+from cellcrawl.plot.labels import position_label, time_text
+from cellcrawl.plot.scales import Limits
+from cellcrawl.plot.style import (
+    COLUMN,
+    INK,
+    PAGE,
+    axes_or_new,
+    figure_of,
+    on,
+    paper_figure,
+    several_axes,
+)
+from cellcrawl.simulation.units import typical_radius
 
 _ARROW = 4.0  # length of the velocity's arrow, in units of time
 _IN_A_ROW = 6
 
 
+@checked
 def cell(
     dataset: xr.Dataset,
     time: float | None = None,
     *,
     field: str = "bound_fraction",
     limits: Limits | None = None,
+    colormap: str | None = None,
     velocity: bool = True,
     colorbar: bool = True,
     ax: Axes | None = None,
@@ -54,6 +67,8 @@ def cell(
         The field on the edge that colours it.
     limits : (float, float), optional
         Ends of the colour scale; the field's own unless given.
+    colormap : str, optional
+        A colour map of matplotlib's; the field's own unless given.
     velocity : bool
         Draw the velocity of the centroid as an arrow.
     colorbar : bool
@@ -74,28 +89,31 @@ def cell(
     edge_field(field)
     record = record_at(run, run["time"].values[-1] if time is None else time)
     points, values = edge_points(run, record), run[field].isel(time=record).values
+    colours = colouring(run, field, values, limits, colormap)
     with axes_or_new(ax, COLUMN, 0.85 * COLUMN, equal=True) as axes:
-        edge = draw_cell(
-            axes, points, values, field, norm_for(field, values, limits), linewidth=2.5
-        )
+        edge = draw_cell(axes, points, values, colours, linewidth=2.5)
         _draw_centroid(axes, run, record, velocity)
         low, high = points.min(axis=0), points.max(axis=0)
-        middle, reach = 0.5 * (low + high), 0.5 * float(np.max(high - low)) + 0.15
+        middle = 0.5 * (low + high)
+        reach = 0.5 * float(np.max(high - low)) + 0.15 * typical_radius(run)
         axes.set_xlim(middle[0] - reach, middle[0] + reach)
         axes.set_ylim(middle[1] - reach, middle[1] + reach)
         axes.set_aspect("equal")
-        axes.set(xlabel="$x$ ($R_0$)", ylabel="$y$ ($R_0$)", title=_time_label(run, record))
+        axes.set(xlabel=position_label(run, "x"), ylabel=position_label(run, "y"))
+        axes.set_title(_time_label(run, record))
         if colorbar:
-            colour_bar(edge, axes, field, values)
+            colour_bar(edge, axes, colours, values)
     return axes
 
 
+@checked
 def snapshots(
     dataset: xr.Dataset,
     times: Any,
     *,
     field: str = "bound_fraction",
     limits: Limits | None = None,
+    colormap: str | None = None,
     velocity: bool = False,
     colorbar: bool = True,
     axes: Sequence[Axes] | None = None,
@@ -114,6 +132,8 @@ def snapshots(
         The field on the edge that colours it.
     limits : (float, float), optional
         Ends of the colour scale; the field's own unless given.
+    colormap : str, optional
+        A colour map of matplotlib's; the field's own unless given.
     velocity : bool
         Draw the velocity of the centroid as an arrow.
     colorbar : bool
@@ -135,24 +155,25 @@ def snapshots(
     edge_field(field)
     records = records_at(run, times)
     values = run[field].isel(time=records).values
-    norm = norm_for(field, values, limits)
+    colours = colouring(run, field, values, limits, colormap)
+    bar: Any = {"fraction": 0.03, "shrink": 0.8}
     if axes is not None:
-        if len(axes) != len(records):
-            raise InputError(f"there are {len(axes)} axes for {len(records)} times")
-        edge = _draw_all(axes, run, records, field, norm, velocity)
+        given = several_axes(axes, len(records), "one for each time")
+        edge = _draw_all(given, run, records, field, colours, velocity)
         if colorbar:
-            colour_bar(edge, list(axes), field, values, fraction=0.03, shrink=0.8)
-        return figure_of(axes[0])
+            colour_bar(edge, given, colours, values, **bar)
+        return figure_of(given[0])
     columns = min(len(records), _IN_A_ROW)
     rows = -(-len(records) // columns)
     side = min((PAGE - 0.7) / columns, 1.6)
-    with paper_figure(side * columns + 0.7, (side + 0.2) * rows + 0.2, equal=True) as figure:
+    width, height = side * columns + 0.7, (side + 0.2) * rows + 0.2
+    with paper_figure(width, height, equal=True, shown=True) as figure:
         panels = figure.subplots(rows, columns, squeeze=False).ravel().tolist()
         for panel in panels[len(records) :]:
             panel.set_axis_off()
-        edge = _draw_all(panels, run, records, field, norm, velocity)
+        edge = _draw_all(panels, run, records, field, colours, velocity)
         if colorbar:
-            colour_bar(edge, panels, field, values, fraction=0.03, shrink=0.8)
+            colour_bar(edge, panels, colours, values, **bar)
     return figure
 
 
@@ -161,33 +182,34 @@ def _draw_all(
     run: xr.Dataset,
     records: Sequence[int],
     field: str,
-    norm: Normalize,
+    colours: Colouring,
     velocity: bool,
 ) -> LineCollection:
     """Draw the cell of each record on its panel, all at one scale; return the last edge."""
     outlines = [edge_points(run, record) for record in records]
-    reach = 0.5 * max(float(np.ptp(outline, axis=0).max()) for outline in outlines) + 0.1
+    reach = 0.5 * max(float(np.ptp(outline, axis=0).max()) for outline in outlines)
+    reach += 0.1 * typical_radius(run)
     start = np.array([run["centroid_x"].values[0], run["centroid_y"].values[0]])
     for panel, record, outline in zip(panels, records, outlines, strict=False):
-        colours = run[field].isel(time=record).values
-        edge = draw_cell(panel, outline, colours, field, norm, linewidth=1.8)
+        values = run[field].isel(time=record).values
+        edge = draw_cell(panel, outline, values, colours, linewidth=1.8)
         middle = 0.5 * (outline.min(axis=0) + outline.max(axis=0))
-        frame(panel, middle - reach, middle + reach, 0.0)
+        frame(panel, middle - reach, middle + reach)
         if np.all(np.abs(start - middle) < reach):
-            panel.plot(*start, "o", color=INK, markersize=2.0, zorder=4)
+            panel.plot(*start, "o", color=on(panel, INK), markersize=2.0, zorder=4)
         _draw_centroid(panel, run, record, velocity)
         panel.set_title(_time_label(run, record))
-    scale_bar(panels[0], round_length(reach))
+    scale_bar(panels[0], run, round_length(reach))
     return edge
 
 
 def _draw_centroid(ax: Axes, run: xr.Dataset, record: int, velocity: bool) -> None:
     now = run.isel(time=[record])
     centre = np.array([now["centroid_x"].values[0], now["centroid_y"].values[0]])
-    ax.plot(*centre, "o", color=INK, markersize=3.0, zorder=5)
+    ax.plot(*centre, "o", color=on(ax, INK), markersize=3.0, zorder=5)
     if velocity:
-        draw_velocity(ax, centre, centroid_velocity(now).values[0], _ARROW)
+        draw_velocity(ax, centre, centroid_velocity(now).values[0], arrow_time(run, _ARROW))
 
 
 def _time_label(run: xr.Dataset, record: int) -> str:
-    return f"$t$ = {float(run['time'].values[record]):.4g}"
+    return f"$t$ = {time_text(run, float(run['time'].values[record]))}"

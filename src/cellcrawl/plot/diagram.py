@@ -1,4 +1,4 @@
-"""Diagrams of a sweep over two parameters: the modes, or the mean of a measure."""
+"""Diagrams of a sweep over one or two parameters: the modes, or the mean of a measure."""
 
 from __future__ import annotations
 
@@ -12,14 +12,21 @@ from matplotlib.lines import Line2D
 from matplotlib.markers import MarkerStyle
 from matplotlib.path import Path
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
+from cellcrawl.plot.along import draw_measure, draw_modes
+from cellcrawl.plot.colouring import plain
 from cellcrawl.plot.mode_symbols import EDGE, MODE_SYMBOLS
-from cellcrawl.plot.style import PAGE, axes_or_new, figure_of
+from cellcrawl.plot.scales import Limits, checked_limits, extend_for
+from cellcrawl.plot.spacing import edges, prepare
+from cellcrawl.plot.style import COLUMN, PAGE, axes_or_new, colormap_for, figure_of
 from cellcrawl.plot.symbols import MEASURE_LABELS, parameter_label
 from cellcrawl.sweeps import Sweep
-from cellcrawl.sweeps.planes import Plane, majority, means, plane
+from cellcrawl.sweeps.planes import Plane, line, majority, means, only_axis, plane
+from cellcrawl.validation import real_number
 
 _HEIGHT = 0.5 * PAGE
+_FEW = 8  # points across that have room in a column
 _ABOVE = 3.0  # zorder: above a stability map
 _FILLS = 0.62  # of the space between points
 _SMALLEST, _LARGEST = 3.0, 9.0  # points
@@ -29,20 +36,24 @@ _KEY_WIDTH = 72.0  # points
 _ARC = 24  # vertices of a full pie
 
 
+@checked
 def diagram(
     sweep: Sweep,
     x: str | None = None,
     y: str | None = None,
     *,
     legend: bool = True,
+    size: float | None = None,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw which mode cells take up over two parameters.
+    """Draw which mode cells take up over two parameters, or along one.
 
     A point where all runs agree has the mode's colour and marker; one where they differ is a small
     pie of the runs' modes, torn cells included. Points that make no regular grid (see
     `sweeps.refine`) are dots on regions in the colour of the mode of most runs at the nearest
-    point; where runs differ the dot is a pie.
+    point; where runs differ the dot is a pie. Where one parameter differs, each mode has a row, and
+    a symbol's area is the part of the runs that show it. Points that are evenly spaced in their
+    logarithm make a logarithmic axis.
 
     Parameters
     ----------
@@ -53,6 +64,9 @@ def diagram(
         their seeds say, are put together in one point.
     legend : bool
         Name the modes, with the number of runs of each: above the axes, or below yours.
+    size : float, optional
+        Diameter of the symbols in points, 0.5 to 50; as large as their distance allows unless
+        given.
     ax : Axes, optional
         Where to draw, on top of a stability map say; the only axes of a new figure unless given.
 
@@ -63,14 +77,21 @@ def diagram(
     Raises
     ------
     InputError
-        If there are no rows, or not two parameters that differ.
+        If there are no rows, nothing that differs, or more than two parameters that do.
     """
-    found = plane(_rows(sweep), x, y)
-    with axes_or_new(ax, PAGE, _HEIGHT) as axes:
+    table = _rows(sweep)
+    if size is not None:
+        size = real_number("size", size, 0.5, 50.0)
+    only = only_axis(table, x, y)
+    if only:
+        return draw_modes(line(table, only), size, ax)
+    found = plane(table, x, y)
+    few = np.unique(found.x).size <= _FEW
+    with axes_or_new(ax, COLUMN if few else PAGE, COLUMN if few else _HEIGHT) as axes:
         if ax is None:
             _frame(axes, found)
         if _is_regular(found):
-            _draw_points(axes, found, _marker_size(axes, found))
+            _draw_points(axes, found, size or _marker_size(axes, found))
         else:
             _draw_regions(axes, found)
         axes.set_xlabel(parameter_label(found.x_name))
@@ -80,16 +101,19 @@ def diagram(
     return axes
 
 
+@checked
 def measure_map(
     sweep: Sweep,
     measure: str,
     x: str | None = None,
     y: str | None = None,
     *,
+    limits: Limits | None = None,
+    colormap: str | None = None,
     colorbar: bool = True,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw the mean of a measure over two parameters, without torn cells.
+    """Draw the mean of a measure over two parameters, without torn cells; or along one.
 
     Parameters
     ----------
@@ -98,7 +122,12 @@ def measure_map(
     measure : str
         A measured column: "speed", "tension", "circularity", "x_c", "tension_period", ...
     x, y : str, optional
-        The parameters; the first two that differ unless given.
+        The parameters; the first two that differ unless given. Where only one differs, the line
+        is the mean, and each run has the symbol of its mode.
+    limits : (float, float), optional
+        Ends of the colour scale, or of the axis where one parameter differs.
+    colormap : str, optional
+        A colour map of matplotlib's; "viridis" unless given.
     colorbar : bool
         Draw the colour bar.
     ax : Axes, optional
@@ -117,31 +146,36 @@ def measure_map(
     """
     table = _rows(sweep)
     values = means(table, measure, x, y)
+    ends: Any = (None, None) if limits is None else checked_limits(limits)
+    if not np.isfinite(values).any():
+        raise InputError(f"no run has a value of {measure}: they may be too short to show it")
+    only = only_axis(table, x, y)
+    if only:
+        return draw_measure(table, line(table, only), measure, values, ends, ax)
     found = plane(table, x, y)
+    look: Any = {"cmap": colormap_for("viridis", colormap), "vmin": ends[0], "vmax": ends[1]}
     with axes_or_new(ax, 0.5 * PAGE, 0.4 * PAGE) as axes:
         across, up = np.unique(found.x), np.unique(found.y)
+        if ax is None:
+            _frame(axes, found, 0.5 if _is_regular(found) else 0.75)
         drawn: Any
         if _is_regular(found):
             tiles = values.reshape(across.size, up.size).T
-            drawn = axes.pcolormesh(across, up, tiles, cmap="viridis", shading="nearest")
+            drawn = axes.pcolormesh(edges(across), edges(up), tiles, **look)
         else:
-            _frame(axes, found)
             size = _marker_size(axes, found)
-            drawn = axes.scatter(
-                found.x, found.y, s=size**2, c=values, cmap="viridis", linewidths=0
-            )
+            drawn = axes.scatter(found.x, found.y, s=size**2, c=values, linewidths=0, **look)
         axes.set_xlabel(parameter_label(found.x_name))
         axes.set_ylabel(parameter_label(found.y_name))
         if colorbar:
-            bar = axes.figure.colorbar(drawn, ax=axes, pad=0.02)
+            extend = extend_for(drawn.norm, values)
+            bar = axes.figure.colorbar(drawn, ax=axes, pad=0.02, extend=extend)
             bar.set_label(MEASURE_LABELS[measure])
-            bar.outline.set_visible(False)
+            plain(bar)
     return axes
 
 
 def _rows(sweep: Sweep) -> Any:
-    if not isinstance(sweep, Sweep):
-        raise InputError(f"a diagram needs a Sweep (see open_sweep), not {type(sweep).__name__}")
     table = sweep.table()
     if len(table) == 0:
         raise InputError(f"{sweep.path} has no rows yet: there is nothing to draw")
@@ -161,29 +195,25 @@ def _draw_regions(axes: Axes, found: Plane) -> None:
     for row in range(up.size):
         away = (np.arange(across.size)[:, None] - i) ** 2 + (row - j) ** 2
         tiles[row] = colours[away.argmin(axis=1)]
-    axes.pcolormesh(across, up, _faint(tiles), shading="nearest", zorder=_ABOVE - 1.0)
+    axes.pcolormesh(edges(across), edges(up), _faint(tiles), zorder=_ABOVE - 1.0)
     _draw_points(axes, found, 2.0 * _SMALLEST / 3.0, lone=1.0)
 
 
-def _frame(axes: Axes, found: Plane) -> None:
-    """Set limits half a space outside the points."""
-    for values, limits in ((found.x, axes.set_xlim), (found.y, axes.set_ylim)):
-        places = np.unique(values)
-        margin = 0.75 * float(np.min(np.diff(places))) if places.size > 1 else 1.0
-        limits(float(places[0]) - margin, float(places[-1]) + margin)
+def _frame(axes: Axes, found: Plane, margin: float = 0.75) -> None:
+    """Set scales, limits and ticks of both axes."""
+    prepare(axes, "x", found.x, margin)
+    prepare(axes, "y", found.y, margin)
 
 
 def _marker_size(axes: Axes, found: Plane) -> float:
     """Diameter in points at which neighbours stay apart."""
-    width, height = _size_of(axes)
+    points = np.column_stack([found.x, found.y])
+    parts = axes.transLimits.transform(axes.transScale.transform(points))
     spaces = []
-    for values, limits, room in (
-        (found.x, axes.get_xlim(), width),
-        (found.y, axes.get_ylim(), height),
-    ):
-        places = np.unique(values)
+    for at, room in zip(parts.T, _size_of(axes), strict=True):
+        places = np.unique(np.round(at, 9))
         if places.size > 1:
-            spaces.append(float(np.min(np.diff(places))) * room / abs(limits[1] - limits[0]))
+            spaces.append(float(np.min(np.diff(places))) * room)
     return min(max(_FILLS * min(spaces, default=_LARGEST), _SMALLEST), _LARGEST)
 
 

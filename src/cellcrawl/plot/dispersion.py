@@ -13,11 +13,21 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.linear import cutoff_wavenumber, growth_rates, hopf_points, oscillation_onset
 from cellcrawl.linear.characteristic import checked_values
 from cellcrawl.parameters import Parameters
-from cellcrawl.plot.style import COLUMN, INK, figure_of, paper_figure
+from cellcrawl.plot.style import (
+    COLUMN,
+    GUIDE,
+    INK,
+    colormap_for,
+    figure_of,
+    on,
+    paper_figure,
+    several_axes,
+)
 from cellcrawl.plot.symbols import (
     FREQUENCY_LABEL,
     GROWTH_LABEL,
@@ -29,12 +39,12 @@ from cellcrawl.validation import real_number
 _STEPS = 800
 _MOST = 12
 _BELOW = 0.75  # how far below 0 is shown, over the largest growth rate
-_GREY = "#999999"
 _DASHED: Any = (0, (3.0, 1.5))
 _ONSET: dict[str, Any] = {"marker": "o", "markersize": 3.5, "markerfacecolor": "white"}
 _HOPF: dict[str, Any] = {"marker": "D", "markersize": 3.0}
 
 
+@checked
 def dispersion(
     parameters: Parameters,
     *,
@@ -76,21 +86,21 @@ def dispersion(
     name, values = _one_family(parameters, family)
     cells = [parameters.replace(**{name: value}) for value in values]
     highest = _highest(cells) if k_max is None else real_number("k_max", k_max, 2.0, 1e4)
-    colours = mpl.colormaps["viridis"](np.linspace(0.0, 0.85, len(cells)))[::-1]
+    colours = mpl.colormaps[colormap_for("viridis")](np.linspace(0.0, 0.85, len(cells)))[::-1]
     if axes is not None:
-        real, imaginary = axes
+        real, imaginary = several_axes(axes, 2, "one for growth rates, one for frequencies")
         _draw_all(real, imaginary, cells, colours, highest)
         if legend and family:
             _name_colours(real, name, values, colours)
         return figure_of(real)
-    with paper_figure(COLUMN, 1.3 * COLUMN) as figure:
+    with paper_figure(COLUMN, 1.3 * COLUMN, shown=True) as figure:
         real, imaginary = figure.subplots(2, 1, sharex=True, height_ratios=(1.25, 1.0))
         _draw_all(real, imaginary, cells, colours, highest)
         real.set_xlabel("")
         if legend and family:
             _name_colours(real, name, values, colours)
         if legend:
-            _name_marks(figure)
+            _name_marks(figure, real)
         figure.align_ylabels([real, imaginary])
     return figure
 
@@ -124,7 +134,7 @@ def _draw_all(
         for cell, colour in zip(cells, colours, strict=True)
     ]
     for ax, label in ((real, GROWTH_LABEL), (imaginary, FREQUENCY_LABEL)):
-        ax.axhline(0.0, color=_GREY, linewidth=0.5, zorder=1.0)
+        ax.axhline(0.0, color=on(ax, GUIDE), linewidth=0.5, zorder=1.0)
         ax.set_xlim(0.0, highest)
         ax.xaxis.set_major_locator(MaxNLocator(integer=True, steps=[1, 2, 5, 10]))
         ax.set_xlabel(WAVENUMBER_LABEL)
@@ -171,11 +181,12 @@ def _name_colours(real: Axes, name: str, values: list[float], colours: np.ndarra
     real.legend(handles=keys, frameon=False, loc="upper right", handlelength=1.4)
 
 
-def _name_marks(figure: Figure) -> None:
-    mark: dict[str, Any] = {"linestyle": "none", "color": INK, "markeredgewidth": 0.8}
+def _name_marks(figure: Figure, ax: Axes) -> None:
+    ink = on(ax, INK)
+    mark: dict[str, Any] = {"linestyle": "none", "color": ink, "markeredgewidth": 0.8}
     keys = [
-        Line2D([], [], color=INK, label="larger root"),
-        Line2D([], [], color=INK, linestyle=_DASHED, label="smaller root"),
+        Line2D([], [], color=ink, label="larger root"),
+        Line2D([], [], color=ink, linestyle=_DASHED, label="smaller root"),
         Line2D([], [], label="onset of oscillation", **mark, **_ONSET),
         Line2D([], [], label="Hopf point", **mark, **_HOPF),
     ]

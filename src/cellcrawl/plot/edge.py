@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.backend_bases import RendererBase
 from matplotlib.collections import LineCollection
-from matplotlib.colorbar import Colorbar
-from matplotlib.colors import Normalize
 from matplotlib.patches import Polygon
+from matplotlib.transforms import Bbox
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar  # type: ignore[import-untyped]
 
-from cellcrawl.plot.scales import SCALES, extend_for, ticks_for
-from cellcrawl.plot.style import BODY, INK, RIM, figure_of
+from cellcrawl.observables import speed
+from cellcrawl.plot.colouring import Colouring
+from cellcrawl.plot.labels import length_unit, unit
+from cellcrawl.plot.style import BODY, INK, RIM, on
+from cellcrawl.simulation.units import typical_radius, units_of
 
 
 def segments(points: np.ndarray) -> np.ndarray:
@@ -38,21 +41,20 @@ def draw_cell(
     ax: Axes,
     points: np.ndarray,
     values: np.ndarray,
-    field: str,
-    norm: Normalize,
+    colours: Colouring,
     *,
     linewidth: float,
     zorder: float = 2.0,
 ) -> LineCollection:
     """Draw one cell: a pale body, and its edge coloured by ``values``, shape (node,)."""
-    body = Polygon(points, facecolor=BODY, alpha=0.7, linewidth=0.0, zorder=zorder - 0.5)
-    for patch in (body, rim(points, field, linewidth, zorder)):
+    body = Polygon(points, facecolor=on(ax, BODY), alpha=0.7, linewidth=0.0, zorder=zorder - 0.5)
+    for patch in (body, rim(ax, points, colours, linewidth, zorder)):
         ax.add_artist(patch)  # callers set the limits; add_patch would measure each outline
     edge = LineCollection(
         list(segments(points)),
         array=values,
-        cmap=SCALES[field].colormap,
-        norm=norm,
+        cmap=colours.colormap,
+        norm=colours.norm,
         linewidths=linewidth,
         capstyle="round",
         joinstyle="round",
@@ -62,13 +64,15 @@ def draw_cell(
     return edge
 
 
-def rim(points: np.ndarray, field: str, linewidth: float, zorder: float) -> Polygon:
+def rim(
+    ax: Axes, points: np.ndarray, colours: Colouring, linewidth: float, zorder: float
+) -> Polygon:
     """Return a grey line just wider than the edge, where its colours may be as light as paper."""
     return Polygon(
         points,
         fill=False,
-        edgecolor=RIM,
-        linewidth=linewidth + 0.9 if SCALES[field].reaches_white else 0.0,
+        edgecolor=on(ax, RIM),
+        linewidth=linewidth + 0.9 if colours.needs_rim else 0.0,
         joinstyle="round",
         zorder=zorder,
     )
@@ -85,49 +89,39 @@ def draw_velocity(ax: Axes, centre: np.ndarray, velocity: np.ndarray, per_speed:
     )
 
 
-def colour_bar(
-    mappable: Any, ax: Any, field: str, values: np.ndarray, *, short: bool = False, **options: Any
-) -> Colorbar:
-    """Add the colour bar of a field, with arrows where values lie beyond its ends."""
-    scale = SCALES[field]
-    first = ax if isinstance(ax, Axes) else np.ravel(np.asarray(ax, dtype=object))[0]
-    bar = figure_of(first).colorbar(
-        mappable,
-        ax=ax,
-        extend=extend_for(mappable.norm, values),
-        label=scale.short_label if short else scale.label,
-        **{"fraction": 0.05, "pad": 0.02, "aspect": 18, **options},
-    )
-    ticks = ticks_for(mappable.norm)
-    if ticks is not None:
-        bar.set_ticks(ticks, labels=[f"{tick:g}".replace("-", "\N{MINUS SIGN}") for tick in ticks])
-        bar.ax.minorticks_off()
-    decoration: Any = bar  # its parts are not typed
-    decoration.outline.set_linewidth(0.4)
-    decoration.solids.set_rasterized(True)
-    bar.ax.tick_params(which="major", length=2, width=mpl.rcParams["ytick.minor.width"])
-    return bar
+def arrow_time(run: xr.Dataset, times: float) -> float:
+    """Return a length of arrows over speed: so many units of time, or about the cell's radius."""
+    one = units_of(run).one("time")
+    if math.isfinite(one):
+        return times * one
+    fastest = float(speed(run).max())
+    return typical_radius(run) / fastest if fastest > 0.0 else 0.0
 
 
-def scale_bar(ax: Axes, length: float | None = None) -> None:
-    """Add a bar of a round length in R_0 below the axes, at the left."""
+def scale_bar(ax: Axes, run: xr.Dataset, length: float | None = None) -> None:
+    """Add a bar of a round length in the unit of the run below the axes, at the left."""
     low, high = sorted(ax.get_xlim())
     size = length or round_length(0.25 * (high - low))
     ax.add_artist(
         AnchoredSizeBar(
             ax.transData,
             size,
-            f"{size:g} $R_0$",
+            length_text(run, size),
             "upper left",
             pad=0.1,
             borderpad=0.1,
             sep=2,
             frameon=False,
-            color=INK,
+            color=on(ax, INK),
             bbox_to_anchor=(0.0, 0.0, 1.0, 0.0),
             bbox_transform=ax.transAxes,
         )
     )
+
+
+def length_text(run: xr.Dataset, length: float) -> str:
+    """Return a length with its unit."""
+    return f"{length:g} {unit(length_unit(run))}"
 
 
 def round_length(about: float) -> float:
@@ -136,9 +130,39 @@ def round_length(about: float) -> float:
     return float(power * max(step for step in (1.0, 2.0, 5.0) if step * power <= about * 1.0001))
 
 
-def frame(ax: Axes, low: np.ndarray, high: np.ndarray, margin: float) -> None:
-    """Show the box from ``low`` to ``high`` with a margin, in equal aspect, without axes."""
-    ax.set_xlim(low[0] - margin, high[0] + margin)
-    ax.set_ylim(low[1] - margin, high[1] + margin)
+def frame(ax: Axes, low: np.ndarray, high: np.ndarray, *, fill: bool = False) -> None:
+    """Show the box from ``low`` to ``high`` in equal aspect, without axes.
+
+    With ``fill`` the axes keep their shape, whatever it becomes, and show more where the box has
+    another.
+    """
+    ax.set_xlim(low[0], high[0])
+    ax.set_ylim(low[1], high[1])
     ax.set_aspect("equal")
     ax.set_axis_off()
+    if fill and ax.get_axes_locator() is None:
+        ax.set_axes_locator(_Filling(low, high))
+
+
+class _Filling:
+    """Widens the limits of axes around a box to their shape, anew at each drawing.
+
+    Matplotlib's own "datalim" widens what it has widened before: a figure whose layout is found in
+    steps, or that changes its size, would show its content smaller and smaller.
+    """
+
+    def __init__(self, low: np.ndarray, high: np.ndarray) -> None:
+        self._middle, self._half = 0.5 * (low + high), 0.5 * (high - low)
+        self._set = np.array([low, high])
+
+    def __call__(self, ax: Any, renderer: RendererBase | None) -> Bbox:
+        place: Bbox = ax.get_position(original=True)
+        limits = np.transpose([ax.get_xlim(), ax.get_ylim()])
+        if np.allclose(limits, self._set):  # else somebody has zoomed
+            panel = place.transformed(ax.figure.transSubfigure)
+            shape = np.array([panel.width, panel.height])
+            half = float(np.max(self._half / shape)) * shape
+            self._set = np.array([self._middle - half, self._middle + half])
+            ax.set_xlim(*self._set[:, 0])
+            ax.set_ylim(*self._set[:, 1])
+        return place

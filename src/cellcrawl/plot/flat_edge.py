@@ -8,10 +8,12 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.one_dimensional.waves import check_flat_edge
-from cellcrawl.plot.edge import colour_bar
-from cellcrawl.plot.scales import SCALES, TIME_LABEL, Limits, norm_for
+from cellcrawl.plot.colouring import colour_bar, colouring
+from cellcrawl.plot.labels import length_unit, time_label, with_unit
+from cellcrawl.plot.scales import Limits
 from cellcrawl.plot.style import COLUMN, axes_or_new
 from cellcrawl.validation import one_of
 
@@ -24,11 +26,14 @@ _SCALE_OF: Final = {
 }
 
 
+@checked
 def flat_edge(
     dataset: xr.Dataset,
     field: str = "bound_fraction",
     *,
     limits: Limits | None = None,
+    colormap: str | None = None,
+    colorbar: bool = True,
     ax: Axes | None = None,
 ) -> Axes:
     """Draw a field of a flat edge over time and position along it.
@@ -41,6 +46,10 @@ def flat_edge(
         What to draw.
     limits : (float, float), optional
         Ends of the colour scale; the field's own unless given.
+    colormap : str, optional
+        A colour map of matplotlib's; the field's own unless given.
+    colorbar : bool
+        Add a colour bar.
     ax : Axes, optional
         Where to draw; the only axes of a new figure unless given.
 
@@ -64,16 +73,18 @@ def flat_edge(
         raise InputError("the records are not at even times: choose t_end a multiple of save_every")
     half = 0.5 * (even[1] - even[0])
     length = float(run.attrs["length"])
+    colours = colouring(run, field, values, limits, colormap, scale)
     with axes_or_new(ax, COLUMN, 1.9) as axes:
         image = axes.imshow(
             values.T,
             extent=(float(times[0] - half), float(times[-1] + half), 0.0, length),
-            norm=norm_for(scale, values, limits),
-            cmap=SCALES[scale].colormap,
+            norm=colours.norm,
+            cmap=colours.colormap,
             origin="lower",
             aspect="auto",
         )
         axes.set_xlim(float(times[0]), float(times[-1]))
-        axes.set(xlabel=TIME_LABEL, ylabel="position $s$ ($R_0$)")
-        colour_bar(image, axes, scale, values, short=True)
+        axes.set(xlabel=time_label(run), ylabel=with_unit("position $s$", length_unit(run)))
+        if colorbar:
+            colour_bar(image, axes, colours, values, short=True)
     return axes

@@ -10,14 +10,18 @@ import xarray as xr
 
 from cellcrawl.errors import InputError
 from cellcrawl.simulation.dataset import check_run
+from cellcrawl.simulation.units import in_micrometres
 from cellcrawl.validation import real_number
 
 _SAME_TIME = 1e-6  # of the time between records
 
 
 def drawable(dataset: Any) -> xr.Dataset:
-    """Return ``dataset`` if it keeps the contract and has a record, or raise `InputError`."""
-    run = check_run(dataset)
+    """Return ``dataset`` if it keeps the contract and has a record, or raise `InputError`.
+
+    A run in SI is returned in micrometres, the units that pictures write.
+    """
+    run = in_micrometres(check_run(dataset))
     if run.sizes["time"] == 0:
         raise InputError("this run has no records: there is nothing to draw")
     return run

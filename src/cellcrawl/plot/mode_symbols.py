@@ -20,6 +20,7 @@ MODE_SYMBOLS: Final[dict[str, ModeSymbol]] = {
     "other": ModeSymbol("#e6a8c8", "s"),
     "stationary": ModeSymbol("#bdbdbd", "o"),
     "fragmented": ModeSymbol("#222222", "X"),
+    "too short": ModeSymbol("#ffffff", "v"),
     "failed": ModeSymbol("#ffffff", "o"),
 }
 EDGE: Final = "#222222"

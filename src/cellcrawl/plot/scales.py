@@ -1,5 +1,8 @@
 """One colour scale a field, in every picture and movie; and the labels with symbol and unit.
 
+Units are those the data is in; numbers that belong to the model, such as the curvature of the round
+cell, are scaled to them.
+
 All maps are even in lightness and told apart by colour-blind readers; a diverging one stands only
 where zero means something.
 """
@@ -8,12 +11,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.colors import LogNorm, Normalize, SymLogNorm
 
 from cellcrawl.errors import InputError
+from cellcrawl.simulation.units import DIMENSIONLESS, Units
 from cellcrawl.validation import real_array
 
 Limits = tuple[float, float]
@@ -24,26 +29,11 @@ class Scale(NamedTuple):
 
     name: str
     symbol: str
-    unit: str
     colormap: str
     limits: Callable[[np.ndarray], Limits]
-    """The limits for given values."""
-    norm: Callable[[float, float], Normalize]
-
-    @property
-    def label(self) -> str:
-        """The name with symbol and unit."""
-        return f"{self.name} {self.symbol}" + (f" ({self.unit})" if self.unit else "")
-
-    @property
-    def reaches_white(self) -> bool:
-        """Whether some of the colours would be lost on paper."""
-        return self.colormap not in ("viridis", "cividis")
-
-    @property
-    def short_label(self) -> str:
-        """The symbol with the unit."""
-        return self.symbol + (f" ({self.unit})" if self.unit else "")
+    """The limits for given values, without dimension where the norm is not linear."""
+    norm: Callable[[float, float, float], Normalize]
+    """The norm for limits and the size of one dimensionless unit."""
 
 
 def _bound(values: np.ndarray) -> Limits:
@@ -60,10 +50,10 @@ def _bulk(values: np.ndarray) -> Limits:
 
 def _whole_decades(values: np.ndarray) -> Limits:
     low, high = np.percentile(values, [0.1, 99.9])
-    edges = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0]
+    edges = [step * 10.0**decade for decade in range(-3, 4) for step in (1.0, 2.0, 5.0)]
     return (
         max((edge for edge in edges if edge <= low), default=edges[0]),
-        min((edge for edge in edges if edge >= high), default=1000.0),
+        min((edge for edge in edges if edge >= high), default=edges[-1]),
     )
 
 
@@ -80,58 +70,64 @@ def _about_zero(values: np.ndarray) -> Limits:
     return -top, top
 
 
-def _linear(low: float, high: float) -> Normalize:
+def _linear(low: float, high: float, one: float) -> Normalize:
     return Normalize(low, high)
 
 
-def _logarithmic(low: float, high: float) -> Normalize:
+def _logarithmic(low: float, high: float, one: float) -> Normalize:
     return LogNorm(low, high)
 
 
-def _curvature_norm(low: float, high: float) -> Normalize:
+def _curvature_norm(low: float, high: float, one: float) -> Normalize:
     """Linear within the curvature of the round cell, logarithmic outside, where corners are."""
-    return SymLogNorm(1.0, vmin=low, vmax=high, base=10)
+    return SymLogNorm(one, vmin=low, vmax=high, base=10)
 
 
-_RADIUS = "$R_0$"
 SCALES: Final[dict[str, Scale]] = {
-    "bound_fraction": Scale("bound fraction", "$n$", "", "viridis", _bound, _linear),
-    "off_rate": Scale(
-        "off-rate", "$r$", r"$k_\mathrm{off}^0$", "magma", _whole_decades, _logarithmic
-    ),
-    "friction": Scale("friction", "$f$", r"$\zeta_0 v_\beta$", "cividis", _bulk, _linear),
-    "curvature": Scale("curvature", r"$\kappa$", "$1/R_0$", "PuOr_r", _curved, _curvature_norm),
-    "normal_velocity": Scale(
-        "normal velocity", "$U$", r"$R_0 k_\mathrm{off}^0$", "RdBu_r", _about_zero, _linear
-    ),
-    "theta": Scale("tangent angle", r"$\theta$", "rad", "viridis", _bulk, _linear),
-    "x": Scale("position", "$x$", _RADIUS, "viridis", _bulk, _linear),
-    "y": Scale("position", "$y$", _RADIUS, "viridis", _bulk, _linear),
+    "bound_fraction": Scale("bound fraction", "$n$", "viridis", _bound, _linear),
+    "off_rate": Scale("off-rate", "$r$", "magma", _whole_decades, _logarithmic),
+    "friction": Scale("friction", "$f$", "cividis", _bulk, _linear),
+    "curvature": Scale("curvature", r"$\kappa$", "PuOr_r", _curved, _curvature_norm),
+    "normal_velocity": Scale("normal velocity", "$U$", "RdBu_r", _about_zero, _linear),
+    "theta": Scale("tangent angle", r"$\theta$", "viridis", _bulk, _linear),
+    "x": Scale("position", "$x$", "viridis", _bulk, _linear),
+    "y": Scale("position", "$y$", "viridis", _bulk, _linear),
 }
-
-TIME_LABEL: Final = r"time $t$ ($1/k_\mathrm{off}^0$)"
-SERIES_LABELS: Final[dict[str, tuple[str, str]]] = {
-    "tension": ("tension", r"$\sigma$ ($\zeta_0 v_\beta/2$)"),
-    "speed": ("speed", r"$v$ ($R_0 k_\mathrm{off}^0$)"),
-    "length": ("length", "$L$ ($R_0$)"),
-    "area": ("area", "$A$ ($R_0^2$)"),
-    "circularity": ("circularity", r"$4\pi A/L^2$"),
-}
+_SCALED: Final = {"off_rate": "rate", "curvature": "curvature"}
+"""Fields whose limits are round numbers of the model's own unit, which is of this kind."""
 
 
-def norm_for(field: str, values: np.ndarray, limits: Limits | None) -> Normalize:
+def norm_for(
+    field: str, values: np.ndarray, limits: Limits | None, units: Units = DIMENSIONLESS
+) -> Normalize:
     """Return the norm of a field for these values, or with the limits the user gave."""
     scale = SCALES[field]
+    one = units.one(_SCALED[field]) if field in _SCALED else 1.0
+    if math.isnan(one):
+        one = 1.0
     if limits is None:
         finite = values[np.isfinite(values)]
-        return scale.norm(*scale.limits(finite if finite.size else np.zeros(1)))
-    low, high = (float(limit) for limit in real_array("limits", limits, (2,)))
-    if low >= high:
-        raise InputError(f"limits = ({low:g}, {high:g}): the first must be below the second")
-    norm = scale.norm(low, high)
+        low, high = scale.limits((finite if finite.size else np.zeros(1)) / one)
+        return scale.norm(low * one, high * one, one)
+    low, high = checked_limits(limits)
+    norm = scale.norm(low, high, one)
     if isinstance(norm, LogNorm) and low <= 0.0:
         raise InputError(f"limits = ({low:g}, {high:g}): {field} has a logarithmic scale, above 0")
     return norm
+
+
+def checked_limits(limits: Any, name: str = "limits") -> Limits:
+    """Return two limits, the first below the second, or raise `InputError`."""
+    low, high = (float(limit) for limit in real_array(name, limits, (2,)))
+    if low >= high:
+        raise InputError(f"{name} = ({low:g}, {high:g}): the first must be below the second")
+    return low, high
+
+
+def reaches_white(colormap: str) -> bool:
+    """Whether some of the colours would be lost on paper."""
+    ends = mpl.colormaps[colormap](np.linspace(0.0, 1.0, 32))[:, :3]
+    return bool(np.any(ends.min(axis=1) > 0.85))
 
 
 def ticks_for(norm: Normalize) -> list[float] | None:
@@ -144,7 +140,8 @@ def ticks_for(norm: Normalize) -> list[float] | None:
         decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
         ticks = [step * 10.0**decade for decade in decades for step in steps]
     elif isinstance(norm, SymLogNorm):
-        sizes = [1.0, 10.0, 100.0]
+        first = math.ceil(math.log10(norm.linthresh) - 1e-9)
+        sizes = [10.0**power for power in range(first, first + 3)]
         ticks = [*(-size for size in reversed(sizes)), 0.0, *sizes]
     else:
         return None

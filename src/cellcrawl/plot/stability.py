@@ -10,6 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch, PathPatch
 
+from cellcrawl.arguments import checked
 from cellcrawl.linear.stability import axis_names, curves_in
 from cellcrawl.plot.regions import Box, region
 from cellcrawl.plot.style import COLUMN, axes_or_new
@@ -19,6 +20,7 @@ _LIGHTEST, _DARKEST = 0.18, 0.78
 _CURVE = 0.14  # how much darker a marginal curve is than its region
 
 
+@checked
 def stability(stability_map: xr.Dataset, *, legend: bool = True, ax: Axes | None = None) -> Axes:
     """Shade where each wavenumber grows, from light to dark blue, with the marginal curves.
 

@@ -12,10 +12,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cellcrawl import observables
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.plot.inputs import drawable
-from cellcrawl.plot.scales import SERIES_LABELS, TIME_LABEL
-from cellcrawl.plot.style import COLUMN, figure_of, paper_figure
+from cellcrawl.plot.labels import SERIES, series_label, time_label, time_unit
+from cellcrawl.plot.style import COLUMN, colormap_for, figure_of, paper_figure, several_axes
 from cellcrawl.validation import known_names
 
 _COLOURS = {
@@ -27,6 +28,7 @@ _COLOURS = {
 }
 
 
+@checked
 def time_series(
     dataset: xr.Dataset | Mapping[str, xr.Dataset],
     quantities: Sequence[str] = ("tension", "speed", "length", "area", "circularity"),
@@ -57,15 +59,14 @@ def time_series(
     runs = _named_runs(dataset)
     if isinstance(quantities, str):
         quantities = [quantities]
-    known_names("plot.time_series", quantities, SERIES_LABELS)
+    known_names("plot.time_series", quantities, SERIES)
     if not quantities:
-        raise InputError(f"quantities is empty: known names: {', '.join(SERIES_LABELS)}")
+        raise InputError(f"quantities is empty: known names: {', '.join(SERIES)}")
     if axes is not None:
-        if len(axes) != len(quantities):
-            raise InputError(f"there are {len(axes)} axes for {len(quantities)} quantities")
-        _draw_all(axes, runs, quantities)
-        return figure_of(axes[0])
-    with paper_figure(COLUMN, 0.35 + 0.85 * len(quantities)) as figure:
+        given = several_axes(axes, len(quantities), "one for each quantity")
+        _draw_all(given, runs, quantities)
+        return figure_of(given[0])
+    with paper_figure(COLUMN, 0.35 + 0.85 * len(quantities), shown=True) as figure:
         panels = figure.subplots(len(quantities), 1, sharex=True, squeeze=False).ravel().tolist()
         _draw_all(panels, runs, quantities)
         figure.align_ylabels(panels)
@@ -78,6 +79,9 @@ def _named_runs(dataset: Any) -> dict[str, xr.Dataset]:
     runs = {str(name): drawable(run) for name, run in dataset.items()}
     if not runs:
         raise InputError("there are no runs to draw: give at least one by name")
+    units = {time_unit(run) for run in runs.values()}
+    if len(units) > 1:
+        raise InputError(f"the runs have times in {' and '.join(sorted(units))}: draw them apart")
     return runs
 
 
@@ -85,7 +89,7 @@ def _draw_all(
     panels: Sequence[Axes], runs: Mapping[str, xr.Dataset], quantities: Sequence[str]
 ) -> None:
     several = len(runs) > 1
-    colours = mpl.colormaps["viridis"](np.linspace(0.0, 0.9, len(runs)))
+    colours = mpl.colormaps[colormap_for("viridis")](np.linspace(0.0, 0.9, len(runs)))
     for panel, quantity in zip(panels, quantities, strict=True):
         for colour, (name, run) in zip(colours, runs.items(), strict=True):
             draw_series(panel, run, quantity, colour if several else None, name)
@@ -93,7 +97,7 @@ def _draw_all(
         last = max(float(run["time"][-1]) for run in runs.values())
         if last > first:
             panel.set_xlim(first, last)
-    panels[-1].set_xlabel(TIME_LABEL)
+    panels[-1].set_xlabel(time_label(next(iter(runs.values()))))
     if several:
         panels[0].legend(frameon=False, handlelength=1.4)
 
@@ -110,7 +114,7 @@ def draw_series(
         color=_COLOURS[quantity] if colour is None else colour,
         label=name or None,
     )
-    ax.set_ylabel("\n".join(SERIES_LABELS[quantity]))
+    ax.set_ylabel(series_label(run, quantity))
     if times[-1] > times[0]:
         ax.set_xlim(float(times[0]), float(times[-1]))
     ax.margins(y=0.08)

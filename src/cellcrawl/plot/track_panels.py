@@ -22,7 +22,7 @@ from cellcrawl.observables.smoothing import smooth
 from cellcrawl.observables.turns import turning_events
 from cellcrawl.plot.edge import round_length
 from cellcrawl.plot.mode_symbols import EDGE, MODE_SYMBOLS
-from cellcrawl.plot.style import INK, RIM, TRACK
+from cellcrawl.plot.style import INK, RIM, TRACK, on
 
 LEFT, RIGHT = "#d1495b", "#1f77b4"
 """Colours of turns, to the side seen on the screen."""
@@ -94,7 +94,7 @@ def _scale_bar(ax: Axes, half: float, units: str) -> None:
             borderpad=0.1,
             sep=2,
             frameon=False,
-            color=INK,
+            color=on(ax, INK),
         )
     )
 
@@ -162,7 +162,7 @@ def draw_displacement(ax: Axes, tracks: Sequence[Track]) -> PersistentWalk | Non
     if not curves:
         return None
     lags, means = _ensemble(curves)
-    ax.plot(lags, means, "o", color=INK, markersize=2.2, label="mean of all")
+    ax.plot(lags, means, "o", color=on(ax, INK), markersize=2.2, label="mean of all")
     fit = fitted_walk(tracks)
     if fit is not None:
         along = np.geomspace(lags[0], lags[-1], 100)
@@ -210,12 +210,12 @@ def draw_turns(
     """Draw one track and its heading over time, turns to the left red and to the right blue."""
     seen = on_screen(track)
     path.plot(seen.x, seen.y, color=UNNAMED, linewidth=0.6)
-    path.plot(seen.x[0], seen.y[0], "o", color=INK, markersize=2.0)
+    path.plot(seen.x[0], seen.y[0], "o", color=on(path, INK), markersize=2.0)
     path.set_aspect("equal", adjustable="datalim")
     path.margins(0.12)
     path.set_axis_off()
     mode = f"{result.mode} {result.confidence:.2f}" if result else "not named"
-    path.set_title(f"{name}  {mode}".strip(), color=INK)
+    path.set_title(f"{name}  {mode}".strip(), color=on(path, INK))
     if len(seen) < 8 or (result is not None and result.mode == "stationary"):
         angle.set_axis_off()
         return

@@ -8,6 +8,7 @@ from typing import Any
 import xarray as xr
 from matplotlib.figure import Figure
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.microscopy.outlines import Outlines
 from cellcrawl.microscopy.track import Track, Tracks
@@ -30,6 +31,7 @@ _EXAMPLES = 8
 _ACROSS = 4
 
 
+@checked
 def tracks(
     tracks: Any, results: Results | None = None, *, title: str = "", examples: int = _EXAMPLES
 ) -> Figure:
@@ -71,7 +73,7 @@ def tracks(
     found = _results(given, results)
     chosen = _examples(given, found, examples)
     rows = -(-len(chosen) // _ACROSS)
-    with paper_figure(PAGE, 4.5 + 1.75 * rows) as figure:
+    with paper_figure(PAGE, 4.5 + 1.75 * rows, shown=True) as figure:
         heights = [4.5, 1.75 * rows] if rows else [4.5]
         parts: Any = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)
         above, below = parts[0, 0], parts[1, 0] if rows else None
@@ -110,6 +112,7 @@ def tracks(
     return figure
 
 
+@checked
 def compare_tracks(
     series: Mapping[str, Any], results: Mapping[str, Results] | None = None
 ) -> Figure:
@@ -139,7 +142,7 @@ def compare_tracks(
     if not series:
         raise InputError("there is nothing to compare: give names and tracks")
     kinds = {name: as_tracks(given) for name, given in series.items()}
-    with paper_figure(PAGE, 7.4) as figure:
+    with paper_figure(PAGE, 7.4, shown=True) as figure:
         columns: Any = figure.subfigures(1, len(kinds), squeeze=False)
         for column, (name, given) in zip(columns[0], kinds.items(), strict=True):
             found = _results(given, (results or {}).get(name))

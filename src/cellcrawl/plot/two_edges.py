@@ -14,13 +14,23 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.one_dimensional.cell import Anchoring
 from cellcrawl.one_dimensional.diagram import BOUNDARIES, boundaries
 from cellcrawl.one_dimensional.regimes import REGIMES, check_two_edges
 from cellcrawl.parameters import Parameters
-from cellcrawl.plot.scales import SERIES_LABELS, TIME_LABEL
-from cellcrawl.plot.style import BODY, COLUMN, INK, PAGE, figure_of, paper_figure
+from cellcrawl.plot.labels import length_unit, series_label, time_label, with_unit
+from cellcrawl.plot.style import (
+    BODY,
+    COLUMN,
+    INK,
+    PAGE,
+    figure_of,
+    on,
+    paper_figure,
+    several_axes,
+)
 from cellcrawl.plot.symbols import parameter_label
 from cellcrawl.validation import shown
 
@@ -46,6 +56,7 @@ _START_TITLES = {
 }
 
 
+@checked
 def two_edges(dataset: xr.Dataset, *, axes: Sequence[Axes] | None = None) -> Figure:
     """Draw where the cell on a line is, the bound fractions of its edges, and the tension.
 
@@ -70,16 +81,17 @@ def two_edges(dataset: xr.Dataset, *, axes: Sequence[Axes] | None = None) -> Fig
     if run.sizes["time"] == 0:
         raise InputError("this run has no records: there is nothing to draw")
     if axes is not None:
-        _draw(run, list(axes))
-        return figure_of(axes[0])
-    with paper_figure(COLUMN, 3.6) as figure:
+        given = several_axes(axes, 3, "one each for position, bound fraction and tension")
+        _draw(run, given)
+        return figure_of(given[0])
+    with paper_figure(COLUMN, 3.6, shown=True) as figure:
         panels = list(figure.subplots(3, 1, sharex=True, height_ratios=(1.3, 1.0, 1.0)))
         _draw(run, panels)
         panels[1].legend(frameon=False, loc="best", handlelength=1.2, ncols=2)
-        panels[0].set_ylabel("position\n$x$ ($R_0$)")
+        panels[0].set_ylabel(with_unit("position\n$x$", length_unit(run)))
         panels[1].set_ylabel("bound fraction\n$n$")
-        panels[2].set_ylabel("\n".join(SERIES_LABELS["tension"]))
-        panels[2].set_xlabel(TIME_LABEL)
+        panels[2].set_ylabel(series_label(run, "tension"))
+        panels[2].set_xlabel(time_label(run))
         figure.align_ylabels(panels)
     return figure
 
@@ -88,12 +100,12 @@ def _draw(run: xr.Dataset, panels: list[Axes]) -> None:
     place, linked, pulled = panels
     times = run["time"].values
     front, rear = (run["position"].sel(edge=edge).values for edge in EDGE_COLOURS)
-    place.fill_between(times, rear, front, color=BODY, linewidth=0.0)
+    place.fill_between(times, rear, front, color=on(place, BODY), linewidth=0.0)
     for (edge, colour), style in zip(EDGE_COLOURS.items(), ("-", _OVER), strict=True):
         place.plot(times, run["position"].sel(edge=edge), color=colour)
         bound = run["bound_fraction"].sel(edge=edge)
         linked.plot(times, bound, color=colour, linestyle=style, label=edge)
-    pulled.plot(times, run["tension"], color=INK)
+    pulled.plot(times, run["tension"], color=on(pulled, INK))
     linked.set_ylim(0.0, 1.0)
     low, high = pulled.get_ylim()
     slack = max(0.0, 0.01 * abs(high) - 0.5 * (high - low))  # a steady tension is a flat line
@@ -104,6 +116,7 @@ def _draw(run: xr.Dataset, panels: list[Axes]) -> None:
         panel.spines[["top", "right"]].set_visible(False)
 
 
+@checked
 def regimes(diagram: xr.Dataset, *, lines: bool = True) -> Figure:
     """Draw the regimes of two edges over two parameters, one panel for each start.
 
@@ -133,7 +146,7 @@ def regimes(diagram: xr.Dataset, *, lines: bool = True) -> Figure:
         )
     starts = [str(start) for start in diagram["start"].values]
     drawn: list[str] = []
-    with paper_figure(max(COLUMN, PAGE * len(starts) / 3.0), 2.75) as figure:
+    with paper_figure(max(COLUMN, PAGE * len(starts) / 3.0), 2.75, shown=True) as figure:
         panels = figure.subplots(1, len(starts), sharex=True, sharey=True, squeeze=False).ravel()
         for panel, start in zip(panels, starts, strict=True):
             _fill(panel, diagram, start)
@@ -160,7 +173,7 @@ def _fill(panel: Axes, diagram: xr.Dataset, start: str) -> None:
     norm = BoundaryNorm(np.arange(len(REGIMES) + 1) - 0.5, len(REGIMES))
     panel.pcolormesh(x, y, shown_codes.T, cmap=colours, norm=norm, shading="nearest", zorder=1.0)
     i, j = np.nonzero(~diagram["settled"].sel(start=start).values)
-    panel.plot(x[i], y[j], ".", color=INK, markersize=1.5, zorder=2.0)
+    panel.plot(x[i], y[j], ".", color=on(panel, INK), markersize=1.5, zorder=2.0)
     panel.set_xlabel(parameter_label(str(first)))
 
 
@@ -177,7 +190,9 @@ def _draw_lines(panels: np.ndarray, diagram: xr.Dataset) -> list[str]:
         for panel in panels:
             for curve in curves:
                 style = _LINES[which]["linestyle"]
-                panel.plot(*curve.T, color=INK, linewidth=0.9, linestyle=style, zorder=3.0)
+                panel.plot(
+                    *curve.T, color=on(panel, INK), linewidth=0.9, linestyle=style, zorder=3.0
+                )
     return drawn
 
 

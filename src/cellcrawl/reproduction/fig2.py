@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import Any, Final
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from cellcrawl import linear, plot
 from cellcrawl.parameters import Parameters
-from cellcrawl.plot.style import PAGE, paper_figure
+from cellcrawl.plot.style import GUIDE, PAGE, paper_figure
 from cellcrawl.reproduction.workplace import Workplace
 
 _CELL: Final = Parameters(r_on=20, zeta_1=600, D=0.01, sigma_c=100)
@@ -20,6 +21,7 @@ FAMILIES: Final[dict[str, list[float]]] = {
     "sigma_c": [0, 100, 200, 300],
 }
 _K_MAX = 40
+_LOOK: Final = ("color", "linestyle", "linewidth", "marker", "markersize", "zorder")
 
 
 def make(workplace: Workplace, name: str) -> list[str]:
@@ -54,11 +56,25 @@ def make(workplace: Workplace, name: str) -> list[str]:
             panel.set_ylabel("")
         panels[0, 0].set_ylim(-0.5 * top, top)
         panels[1, 0].set_ylim(bottom=-2.0)
+        _magnify(panels[0, -1])
         figure.align_ylabels(list(panels[:, 0]))
         workplace.picture(figure)
     names = ("parameter", "value", "k", "growth_1", "growth_2", "frequency_1", "frequency_2")
     workplace.table("growth-rates", dict(zip(names, zip(*rows, strict=True), strict=True)))
     return found
+
+
+def _magnify(panel: Axes) -> None:
+    """Show where the lines of a family that hardly differ cross zero, larger."""
+    inset = panel.inset_axes((0.1, 0.06, 0.42, 0.3), xlim=(24.0, 30.0), ylim=(-1.5, 1.5))
+    for line in panel.lines:
+        x, y = (np.asarray(values, dtype=float) for values in line.get_data())
+        look = {name: getattr(line, f"get_{name}")() for name in _LOOK}
+        inset.plot(x, y, **look)
+    inset.set_xticks([25, 30])
+    inset.set_yticks([])
+    inset.tick_params(labelsize="x-small", pad=1.5)
+    panel.indicate_inset_zoom(inset, edgecolor=GUIDE, linewidth=0.5)
 
 
 def _first_decaying(cell: Parameters) -> int:

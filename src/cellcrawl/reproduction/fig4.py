@@ -11,6 +11,7 @@ from matplotlib.figure import SubFigure
 
 from cellcrawl import classify, linear, plot
 from cellcrawl.parameters import Parameters
+from cellcrawl.plot.colouring import shared_bar
 from cellcrawl.plot.style import PAGE, paper_figure
 from cellcrawl.reproduction.cells import LONG, NINE, Cell
 from cellcrawl.reproduction.movies import SAVE_EVERY
@@ -19,6 +20,7 @@ from cellcrawl.reproduction.workplace import Workplace
 from cellcrawl.sweeps import Sweep
 
 _WAVES = (1, 2, 5, 10, 15)
+_LIMITS = (0.1, 0.8)
 
 
 def make(workplace: Workplace, name: str) -> list[str]:
@@ -27,7 +29,7 @@ def make(workplace: Workplace, name: str) -> list[str]:
     sweep = swept(workplace)
     runs = {cell: workplace.run(cell.parameters, end, save_every=SAVE_EVERY) for cell in NINE}
     with paper_figure(PAGE, 9.2) as figure:
-        grid = figure.add_gridspec(2, 1, height_ratios=(1.0, 1.5))
+        grid = figure.add_gridspec(2, 1, height_ratios=(1.0, 1.4))
         _draw_map(workplace, sweep, figure.add_subfigure(grid[0]))
         _draw_tracks(runs, figure.add_subfigure(grid[1]))
         workplace.picture(figure)
@@ -49,7 +51,7 @@ def _draw_map(workplace: Workplace, sweep: Sweep, panel: SubFigure) -> None:
         "zeta_1": np.linspace(ZETA_1[0] - 10, ZETA_1[-1] + 10, 111),
     }
     stability = linear.stability_map(Parameters(), k=_WAVES, **plane)
-    plot.stability(stability, legend=False, ax=ax)
+    plot.stability(stability, ax=ax)
     ax.set_title("A", loc="left", fontweight="bold")
     panel.canvas.draw()  # symbols are sized by the room that the axes have
     plot.diagram(sweep, "r_on", "zeta_1", ax=ax)
@@ -59,19 +61,9 @@ def _draw_map(workplace: Workplace, sweep: Sweep, panel: SubFigure) -> None:
 def _draw_tracks(runs: dict[Cell, xr.Dataset], panel: SubFigure) -> None:
     axes = panel.subplots(3, 3)
     for letter, ax, (cell, run) in zip("BCDEFGHIJ", axes.ravel(), runs.items(), strict=True):
-        last = ax is axes.ravel()[-1]
-        plot.path(run, cell.apart, limits=(0.1, 0.8), colorbar=False, ax=ax)
+        plot.path(run, cell.apart, limits=_LIMITS, colorbar=False, ax=ax)
         ax.set_title(f"{letter}   {cell.mode} ({cell.r_on:g}, {cell.zeta_1:g})", loc="left")
-        if last:
-            edge = next(part for part in reversed(ax.collections))
-            plot.edge.colour_bar(
-                edge,
-                axes.ravel().tolist(),
-                "bound_fraction",
-                run["bound_fraction"].values,
-                shrink=0.4,
-                fraction=0.03,
-            )
+    shared_bar(axes.ravel().tolist(), run, "bound_fraction", _LIMITS, shrink=0.4)
 
 
 def _found(sweep: Sweep) -> list[str]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from cellcrawl import observables, plot
 from cellcrawl.parameters import Parameters
+from cellcrawl.plot.colouring import shared_bar
 from cellcrawl.plot.style import PAGE, paper_figure
 from cellcrawl.reproduction.cells import LONG
 from cellcrawl.reproduction.movies import SAVE_EVERY
@@ -24,26 +25,29 @@ class _Panel(NamedTuple):
     """How many turns, each with a peak of tension, make a cycle: two in a zigzag."""
 
 
+_LIMITS: Final = (0.1, 0.8)
 _PANELS: Final = (_Panel(24, 540, "rotation", 10, 1), _Panel(26, 600, "zigzag", 12, 2))
 
 
 def make(workplace: Workplace, name: str) -> list[str]:
     """Draw one period of each, from a minimum of the tension on."""
     end, found = 0.6 * LONG if workplace.quick else LONG, []
-    with paper_figure(PAGE, 5.4) as figure:
-        grid = figure.add_gridspec(len(_PANELS), 1)
-        for row, (letter, panel) in enumerate(zip("AB", _PANELS, strict=True)):
+    with paper_figure(PAGE, 5.2) as figure:
+        axes = figure.subplots(2 * len(_PANELS), 1, height_ratios=(1.4, 1.0) * len(_PANELS))
+        for letter, panel, pair in zip("AB", _PANELS, axes.reshape(-1, 2).tolist(), strict=True):
             cell = Parameters(r_on=panel.r_on, zeta_1=panel.zeta_1)
             run = workplace.run(cell, end, save_every=SAVE_EVERY)
             start, turn = period(run)
-            axes = figure.add_subfigure(grid[row]).subplots(2, 1, height_ratios=(1.4, 1.0))
-            plot.cycle(run, start, panel.turns * turn, shapes=panel.shapes, axes=axes.tolist())
-            axes[0].set_title(
+            duration = panel.turns * turn
+            look: Any = {"shapes": panel.shapes, "limits": _LIMITS, "colorbar": False}
+            plot.cycle(run, start, duration, axes=pair, **look)
+            pair[0].set_title(
                 f"{letter}   {panel.mode}, ({panel.r_on:g}, {panel.zeta_1:g})", loc="left"
             )
-            stretch = run.sel(time=slice(start, start + panel.turns * turn))
+            stretch = run.sel(time=slice(start, start + duration))
             _keep(workplace, panel.mode, stretch)
             found.append(f"{panel.mode}: {_found(run, stretch, turn)}")
+        shared_bar(axes.tolist(), stretch, "bound_fraction", _LIMITS, shrink=0.5)
         workplace.picture(figure)
     return found
 

@@ -6,10 +6,13 @@ from typing import Final
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 
 from cellcrawl import classify, observables, plot
 from cellcrawl.parameters import Parameters, Schedule
-from cellcrawl.plot.style import PAGE, paper_figure
+from cellcrawl.plot.labels import time_label
+from cellcrawl.plot.style import PAGE, RIM, paper_figure
+from cellcrawl.plot.time_series import draw_series
 from cellcrawl.reproduction.cells import through
 from cellcrawl.reproduction.workplace import Workplace
 
@@ -19,29 +22,24 @@ _BETWEEN: Final = (24.0, 540.0)
 _FRESH: Final = "(30, 580) from the start"
 _ROUND: Final = (56.0, 560.0)
 _ZIGZAGS_TOO: Final = (26.0, 600.0)
+_LOOKS: Final = (("#9ecae1", 0.8), ("#0072b2", 1.2), ("#d55e00", 1.2))
 
 
 def routes(scale: float = 1.0) -> dict[str, Schedule]:
-    """Return the changes from one to the other by name, times multiplied by ``scale``."""
+    """Return the changes from one to the other by name, times multiplied by ``scale``.
 
-    def ramp(start: float, over: float) -> Schedule:
-        return through([(scale * start, GLIDES), (scale * (start + over), ZIGZAGS)])
+    Names say when a change begins and how long it takes.
+    """
 
-    return {
-        "t₀ = 25, abrupt": ramp(25, 0),
-        "t₀ = 25, Δt = 10": ramp(25, 10),
-        "t₀ = 25, Δt = 25": ramp(25, 25),
-        "t₀ = 50, abrupt": ramp(50, 0),
-        "t₀ = 50, Δt = 10": ramp(50, 10),
-        "by (24, 540), 25 to 50": through(
-            [
-                (scale * 25, GLIDES),
-                (scale * 25, _BETWEEN),
-                (scale * 50, _BETWEEN),
-                (scale * 50, ZIGZAGS),
-            ]
-        ),
-    }
+    def ramp(start: float, over: float) -> tuple[str, Schedule]:
+        start, end = scale * start, scale * (start + over)
+        how = f"over {end - start:g}" if over else "abrupt"
+        return f"at {start:g}, {how}", through([(start, GLIDES), (end, ZIGZAGS)])
+
+    there, back = scale * 25, scale * 50
+    by = [(there, GLIDES), (there, _BETWEEN), (back, _BETWEEN), (back, ZIGZAGS)]
+    ramps = [ramp(25, 0), ramp(25, 10), ramp(25, 25), ramp(50, 0), ramp(50, 10)]
+    return {**dict(ramps), f"by (24, 540), {there:g} to {back:g}": through(by)}
 
 
 def make(workplace: Workplace, name: str) -> list[str]:
@@ -57,17 +55,18 @@ def make(workplace: Workplace, name: str) -> list[str]:
     abrupt = next(iter(runs.values()))
     window = abrupt.sel(time=slice(10.0 * scale, 70.0 * scale))
     round_ones = _from_round(workplace, scale)
-    with paper_figure(PAGE, 5.2) as figure:
-        grid = figure.add_gridspec(2, 2, width_ratios=(1.0, 1.9), height_ratios=(1.5, 1.0))
-        left = figure.add_subplot(grid[:, 0])
+    with paper_figure(PAGE, 1.9 + 0.62 * len(runs)) as figure:
+        grid = figure.add_gridspec(1, 2, width_ratios=(1.0, 1.7))
+        left = figure.add_subfigure(grid[0]).subplots()
         plot.path(window, every=5.0 * scale, times=True, ax=left)
-        upper, lower = (figure.add_subplot(grid[row, 1]) for row in (0, 1))
-        plot.time_series({**runs, _FRESH: fresh}, ["tension"], axes=[upper])
-        plot.time_series(round_ones, ["tension"], axes=[lower])
+        heights = [1.0] * len(runs) + [2.2]
+        *upper, lower = figure.add_subfigure(grid[1]).subplots(
+            len(runs) + 1, 1, height_ratios=heights
+        )
+        _draw_routes(upper, runs, fresh)
+        _draw_from_round(lower, round_ones)
         lower.set_xlim(20.0 * scale, 45.0 * scale)
-        for panel, below in ((upper, -0.2), (lower, -0.32)):
-            panel.legend(frameon=False, ncols=2, loc="upper center", bbox_to_anchor=(0.5, below))
-        for panel, letter in ((left, "A"), (upper, "B"), (lower, "C")):
+        for panel, letter in ((left, "A"), (upper[0], "B"), (lower, "C")):
             panel.set_title(letter, loc="left", fontweight="bold")
         workplace.picture(figure)
     tension = {label: run["tension"] for label, run in {**runs, _FRESH: fresh}.items()}
@@ -79,13 +78,36 @@ def make(workplace: Workplace, name: str) -> list[str]:
     return [*_found(tension, end), *_found_from_round(round_ones, end)]
 
 
+def _draw_routes(panels: list[Axes], runs: dict[str, xr.Dataset], fresh: xr.Dataset) -> None:
+    """Draw the tension on each route over that of a cell that zigzags from the start, in grey."""
+    for number, (panel, (label, run)) in enumerate(zip(panels, runs.items(), strict=True)):
+        draw_series(panel, run, "tension")
+        panel.plot(fresh["time"], fresh["tension"], color=RIM, linewidth=0.7, zorder=1.0)
+        known = label if number else f"{label};  grey: {_FRESH}"
+        panel.text(0.0, 1.0, f" {known}", transform=panel.transAxes, va="top", fontsize="small")
+        panel.set_ylim(600.0, 1250.0)
+        panel.set_yticks([700.0, 1000.0])
+        if number != len(runs) // 2:
+            panel.set_ylabel("")
+        panel.tick_params(labelbottom=number == len(runs) - 1)
+    panels[-1].set_xlabel(time_label(fresh))
+
+
+def _draw_from_round(panel: Axes, runs: dict[str, xr.Dataset]) -> None:
+    for (label, run), (colour, width) in zip(runs.items(), _LOOKS, strict=True):
+        draw_series(panel, run, "tension", colour, label)
+        panel.lines[-1].set_linewidth(width)
+    panel.set_xlabel(time_label(run))
+    panel.legend(frameon=False, ncols=1, loc="upper right", handlelength=1.4)
+
+
 def _from_round(workplace: Workplace, scale: float) -> dict[str, xr.Dataset]:
     """Return runs of a nearly round glider made to zigzag: by a jump, slowly, by the other law."""
     runs = {}
     for law, over in (("printed", 0.0), ("printed", 10.0), ("consistent", 0.0)):
         cell = Parameters(r_on=_ROUND[0], zeta_1=_ROUND[1], elasticity=law)
         schedule = through([(scale * 25, _ROUND), (scale * (25 + over), _ZIGZAGS_TOO)])
-        how = f"Δt = {over:g}" if over else "abrupt"
+        how = f"over {scale * over:g}" if over else "abrupt"
         runs[f"{how}, {law} law"] = workplace.run(
             cell, 100.0 * scale, schedule=schedule, save_every=0.04, nodes=64
         )

@@ -17,6 +17,7 @@ _MEASURES: Final = {
     "tension": r"tension $\sigma$ ($\zeta_0 v_\beta/2$)",
     "x_c": "distance from start $x_c$ ($R_0$)",
 }
+_SYMBOL: Final = 3.2  # points: the map stays in sight
 _MOVING: Final = ("gliding", "rotational", "zigzag", "other")
 
 
@@ -29,9 +30,8 @@ def make(workplace: Workplace, name: str) -> list[str]:
             plot.measure_map(sweep, measure, "r_on", "zeta_1", colorbar=False, ax=panel)
             figure.colorbar(panel.collections[0], ax=panel, pad=0.02, label=_MEASURES[measure])
             panel.set_title(letter, loc="left", fontweight="bold")
-        figure.canvas.draw()  # symbols are sized by the room that the axes have
         for letter, panel in zip("ABC", panels, strict=True):
-            plot.diagram(sweep, "r_on", "zeta_1", ax=panel, legend=letter == "C")
+            plot.diagram(sweep, "r_on", "zeta_1", size=_SYMBOL, ax=panel, legend=letter == "C")
         for panel in panels[:-1]:
             panel.set_xlabel("")
         workplace.picture(figure)

@@ -10,6 +10,7 @@ import numpy as np
 from cellcrawl.errors import InputError
 from cellcrawl.modes import MODES
 from cellcrawl.parameters import DESCRIPTIONS
+from cellcrawl.simulation.events import MODEL_ENDINGS
 from cellcrawl.sweeps.measures import MEASURES
 from cellcrawl.validation import known_names
 
@@ -17,7 +18,9 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 FAILED = "failed"
-"""Counted in place of a mode for runs that have none."""
+"""Counted in place of a mode for runs that did not end as the model allows and have none."""
+TOO_SHORT = "too short"
+"""The same for runs that ended well but are too short to show a mode."""
 
 
 class Plane(NamedTuple):
@@ -28,7 +31,7 @@ class Plane(NamedTuple):
     x: np.ndarray
     y: np.ndarray
     counts: dict[str, np.ndarray]
-    """For each mode that occurs, and "failed", how many runs show it."""
+    """For each mode that occurs, "too short" and "failed", how many runs show it."""
 
     @property
     def runs(self) -> np.ndarray:
@@ -77,14 +80,36 @@ def plane(table: pa.Table, x: str | None = None, y: str | None = None) -> Plane:
     """
     x_name, y_name = axes_of(table, x, y)
     place, places = _places(table, x_name, y_name)
-    modes = [mode or FAILED for mode in table["mode"].to_pylist()]
-    occur = Counter(modes)
-    counts = {
-        mode: np.bincount(place[np.array(modes) == mode], minlength=len(places))
-        for mode in (*MODES, FAILED)
+    return Plane(x_name, y_name, places[:, 0], places[:, 1], _counts(table, place, len(places)))
+
+
+def line(table: pa.Table, x: str) -> Plane:
+    """Return the modes at each point over one parameter, as a plane without a second one."""
+    place, places = _places(table, x)
+    counts = _counts(table, place, len(places))
+    return Plane(x, "", places[:, 0], np.zeros(len(places)), counts)
+
+
+def only_axis(table: pa.Table, x: str | None, y: str | None) -> str | None:
+    """Return the parameter of a diagram along one: the only one that differs; else None."""
+    differ = varied(table)
+    return differ[0] if len(differ) == 1 and y is None and x in (None, differ[0]) else None
+
+
+def named_modes(table: pa.Table) -> list[str]:
+    """Return the mode of each row; for a row that has none, why."""
+    pairs = zip(table["mode"].to_pylist(), table["status"].to_pylist(), strict=True)
+    return [mode or (TOO_SHORT if status in MODEL_ENDINGS else FAILED) for mode, status in pairs]
+
+
+def _counts(table: pa.Table, place: np.ndarray, points: int) -> dict[str, np.ndarray]:
+    modes = np.array(named_modes(table))
+    occur = Counter(modes.tolist())
+    return {
+        mode: np.bincount(place[modes == mode], minlength=points)
+        for mode in (*MODES, TOO_SHORT, FAILED)
         if occur[mode]
     }
-    return Plane(x_name, y_name, places[:, 0], places[:, 1], counts)
 
 
 def majority(found: Plane) -> list[str]:
@@ -101,12 +126,13 @@ def majority(found: Plane) -> list[str]:
 
 
 def means(table: pa.Table, measure: str, x: str | None = None, y: str | None = None) -> np.ndarray:
-    """Return the mean of a measure at the points of `plane`, without torn cells.
+    """Return the mean of a measure at the points of `plane` or `line`, without torn cells.
 
     NaN at a point where no run has it.
     """
     known_names("the measures", [measure], MEASURES)
-    place, places = _places(table, *axes_of(table, x, y))
+    only = only_axis(table, x, y)
+    place, places = _places(table, *((only,) if only else axes_of(table, x, y)))
     values = np.array([np.nan if v is None else v for v in table[measure].to_pylist()], dtype=float)
     whole = np.array([mode != "fragmented" for mode in table["mode"].to_pylist()])
     counted = whole & np.isfinite(values)
@@ -115,8 +141,8 @@ def means(table: pa.Table, measure: str, x: str | None = None, y: str | None = N
     return np.where(number > 0, total / np.maximum(number, 1), np.nan)
 
 
-def _places(table: pa.Table, x: str, y: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return the point of each row and the points, shape (points, 2), sorted by x, then y."""
-    rows = np.column_stack([table[x].to_numpy(), table[y].to_numpy()])
+def _places(table: pa.Table, *names: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return the point of each row and the points, shape (points, names), sorted."""
+    rows = np.column_stack([table[name].to_numpy() for name in names])
     places, place = np.unique(rows, axis=0, return_inverse=True)
     return place.reshape(-1), places

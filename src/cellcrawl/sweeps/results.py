@@ -236,9 +236,9 @@ class Sweep:
         return dict(reasons.most_common(most))
 
     def can_be_drawn(self) -> bool:
-        """Whether there are rows, and two parameters that differ."""
+        """Whether there are rows, and one or two parameters that differ."""
         table = self.table()
-        return len(table) > 0 and len(varied(table)) >= 2
+        return len(table) > 0 and 1 <= len(varied(table)) <= 2
 
     def collect(self) -> None:
         """Make rows of what killed workers and drivers left behind."""
