@@ -26,7 +26,8 @@ def test_front_has_more_than_the_rear_and_left_as_much_as_right(velocity):
 def test_left_is_left_of_the_way_ahead():
     run = straight((0.2, 0.0), nodes=2048)
     angle = np.arctan2(run["y"] - run["centroid_y"], run["x"] - run["centroid_x"])
-    leaning = run.assign(bound_fraction=(0.5 + 0.2 * np.sin(angle)).transpose("time", "node"))
+    linkers = (0.5 + 0.2 * np.sin(angle)).transpose("time", "node").values
+    leaning = run.assign(bound_fraction=run["bound_fraction"].copy(data=linkers))
     np.testing.assert_allclose(cc.observables.left_right_asymmetry(leaning), KNOWN, rtol=2e-3)
     backwards = straight((-0.2, 0.0), nodes=2048).assign(bound_fraction=leaning["bound_fraction"])
     np.testing.assert_allclose(cc.observables.left_right_asymmetry(backwards), -KNOWN, rtol=2e-3)

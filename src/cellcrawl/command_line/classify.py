@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from cellcrawl.command_line.main import USER_MISTAKE, complain
+from cellcrawl.command_line.main import complain
 from cellcrawl.command_line.many_tracks import classify_all
 from cellcrawl.command_line.options import cannot_write, say, wants_progress
 from cellcrawl.command_line.track_files import read_tracks_of, reading_options
@@ -63,15 +63,14 @@ def classify(
     remove_drift: bool,
     output: Path | None,
     **reading: Any,
-) -> int:
+) -> None:
     """Name the motility mode of each FILE: gliding, rotational, zigzag, other, stationary or torn.
 
     A FILE is a run (.nc, .zarr) or holds tracks: a table whose columns have the usual names, or
     what TrackMate, trackpy, btrack, napari, CellProfiler, celltrackR, ImageJ and the Cell Tracking
     Challenge write. It is known by its content; what was recognised and left out is said. Of
     several tracks the mode of most is named too. A track or a file that cannot be named is listed
-    with the reason and stops none of the others; after a file that could not be read the exit code
-    is 2.
+    with the reason and stops none of the others.
 
     \b
     Examples
@@ -110,7 +109,6 @@ def classify(
     if output is not None:
         _write(output, rows)
         say(f"table    {output}")
-    return USER_MISTAKE if failures else 0
 
 
 def _rows(

@@ -46,7 +46,8 @@ class SweepStore:
     """
 
     def __init__(self, folder: str | Path) -> None:
-        self.folder = file_path("output", folder).absolute()  # the program may change its folder
+        self._given = file_path("output", folder)  # as messages name it
+        self.folder = self._given.absolute()  # the program may change its folder
         self.layout = Layout(self.folder)
 
     def exists(self) -> bool:
@@ -65,7 +66,7 @@ class SweepStore:
         """
         path, schema = self.layout.manifest, 0
         if not path.exists():
-            raise InputError(f"there is no sweep in {self.folder}: it has no {path.name}")
+            raise InputError(f"there is no sweep in {self._given}: it has no {path.name}")
         try:
             found = json.loads(path.read_text("utf-8"))
             schema = int(found["schema"])
@@ -106,24 +107,24 @@ class SweepStore:
                 self._write_manifest({**found, "grids": [*grids_of(found), grid.describe()]})
             return
         if self.folder.exists() and (not self.folder.is_dir() or any(self.folder.iterdir())):
-            raise InputError(f"{self.folder} exists and holds no sweep: give another output")
+            raise InputError(f"{self._given} exists and holds no sweep: give another output")
         self._write_manifest(manifest)
 
     def _is_the_same(self, asked: dict[str, Any], found: dict[str, Any], extend: bool) -> bool:
         if found["code"] != asked["code"]:
             raise InputError(
-                f"{self.folder} was made by another version of cellcrawl ({found['code']}, this is "
+                f"{self._given} was made by another version of cellcrawl ({found['code']}, this is "
                 f"{asked['code']}), whose rows may differ: give another output"
             )
         if found["keep"] != asked["keep"]:
             raise InputError(
-                f"{self.folder} keeps {found['keep']}, not {asked['keep']}: give another output, "
+                f"{self._given} keeps {found['keep']}, not {asked['keep']}: give another output, "
                 f"or keep = {found['keep']!r}"
             )
         same = asked["digest"] == found["digest"] or asked["grid"] in grids_of(found)[1:]
         if not same and not extend:
             raise InputError(
-                f"{self.folder} holds another grid, of {found['runs']} runs: give another output, "
+                f"{self._given} holds another grid, of {found['runs']} runs: give another output, "
                 "or ask to extend it by this one"
             )
         return same
