@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Iterator
 from typing import Any
 
 import hypothesis
@@ -24,6 +26,15 @@ hypothesis.settings.load_profile("cellcrawl")
 def settings() -> dict[str, Any]:
     """All of matplotlib's settings but the backend, which loads pyplot when it is looked at."""
     return {name: mpl.rcParams[name] for name in mpl.rcParams if name != "backend"}
+
+
+@pytest.fixture(autouse=True)
+def _close_figures() -> Iterator[None]:
+    """Leave none of pyplot's figures, which it keeps once any test has loaded it, to the next."""
+    yield
+    pyplot: Any = sys.modules.get("matplotlib.pyplot")
+    if pyplot is not None:
+        pyplot.close("all")
 
 
 @pytest.fixture(scope="session")

@@ -46,10 +46,11 @@ def test_a_cell_alike_on_both_sides_has_no_side_difference():
 
 def test_more_linkers_on_the_left_are_counted_positive():
     run = straight(velocity=(0.2, 0.0))
-    run["bound_fraction"] = run["bound_fraction"] + 0.1 * (run["y"] - run["centroid_y"])
-    assert np.all(side_difference(run) > 0.1)
-    run["bound_fraction"] = run["bound_fraction"] - 0.2 * (run["y"] - run["centroid_y"])
-    assert np.all(side_difference(run) < -0.1)
+    left = (run["y"] - run["centroid_y"]).transpose("time", "node").values
+    for slope in (0.1, -0.1):
+        linkers = run["bound_fraction"].copy(data=run["bound_fraction"].values + slope * left)
+        difference = side_difference(run.assign(bound_fraction=linkers))
+        assert np.all(np.sign(slope) * difference > 0.1)
 
 
 def test_period_is_that_of_a_sine():
