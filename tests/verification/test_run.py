@@ -203,7 +203,6 @@ def test_the_page_in_the_documentation_is_that_of_the_recorded_run():
     assert (root / "docs" / "verification.md").read_text("utf-8") == report.page(content)
 
 
-@pytest.mark.xfail(reason="to be recorded anew with the solver that keeps the tension law")
 def test_the_recorded_run_has_every_check():
     root = Path(__file__).resolve().parents[2]
     content = json.loads((root / "benchmarks" / "results" / "verification.json").read_text("utf-8"))

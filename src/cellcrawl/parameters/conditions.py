@@ -7,6 +7,8 @@ change in any solver.
 
 from __future__ import annotations
 
+import functools
+import math
 from dataclasses import dataclass
 from typing import Final
 
@@ -32,7 +34,7 @@ class Conditions:
 
     def at(self, time: float) -> Parameters:
         """Return the parameters that hold from ``time`` on."""
-        return self.schedule.at(self.parameters, time)
+        return self._at(time)
 
     def edge(self, time: float, nodes: int, *, before: bool = False) -> np.ndarray:
         """Return the local parameters at equal arclengths, shape (len(EDGE_ROWS), nodes).
@@ -41,22 +43,19 @@ class Conditions:
 
         With ``before``, a jump at ``time`` has not happened yet.
         """
-        now = (self.schedule.before if before else self.schedule.at)(self.parameters, time)
-        column = np.array([[getattr(now, name)] for name in EDGE_ROWS])
-        return np.repeat(column, nodes, axis=1)
+        return np.repeat(_edge_column(self._at(time, before=before)), nodes, axis=1)
 
     def tension_rate(self, time: float, *, before: bool = False) -> float:
         """Return ``G`` of the tension law from ``time`` on, or up to it with ``before``."""
-        now = (self.schedule.before if before else self.schedule.at)(self.parameters, time)
-        return now.tension_rate
+        return self._at(time, before=before).tension_rate
 
     def next_break(self, time: float) -> float:
         """Return the next time at which a parameter jumps or a ramp begins or ends."""
-        return self.schedule.next_break(time)
+        return self.schedule.next_break(time) if self.schedule.breaks else math.inf
 
     def varies(self, start: float, end: float) -> bool:
         """Whether a parameter ramps between ``start`` and ``end``."""
-        return self.schedule.varies(start, end)
+        return bool(self.schedule.breaks) and self.schedule.varies(start, end)
 
     def extremes(self) -> list[Parameters]:
         """Return the parameters at the start and at both sides of every break."""
@@ -64,3 +63,13 @@ class Conditions:
         for time in self.schedule.breaks:
             found += [self.schedule.before(self.parameters, time), self.at(time)]
         return found
+
+    def _at(self, time: float, *, before: bool = False) -> Parameters:
+        if not self.schedule.breaks:
+            return self.parameters
+        return (self.schedule.before if before else self.schedule.at)(self.parameters, time)
+
+
+@functools.lru_cache(maxsize=16)
+def _edge_column(parameters: Parameters) -> np.ndarray:
+    return np.array([[getattr(parameters, name)] for name in EDGE_ROWS])
