@@ -16,7 +16,7 @@ import numpy as np
 
 from cellcrawl._compile import kernel
 from cellcrawl.physics.exponential import exponential
-from cellcrawl.physics.force_balance import ROUND_OFF, balance, halley_step
+from cellcrawl.physics.slip_bond import ROUND_OFF, balance, halley_step
 from cellcrawl.physics.laws import (
     binding_rate,
     driving_force,

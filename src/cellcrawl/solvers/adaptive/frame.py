@@ -13,9 +13,8 @@ import numpy as np
 
 from cellcrawl._compile import inlined_kernel, kernel
 from cellcrawl.curve.fourier import BEFORE, TAPS
-from cellcrawl.physics.exponential import exponential
-from cellcrawl.physics.force_balance import SOLVED, balance, solve_off_rate
-from cellcrawl.physics.laws import driving_force, edge_velocity, friction
+from cellcrawl.laws.functions import friction, off_rate, velocity
+from cellcrawl.physics.force_balance import SOLVED, bond_force, solve_bonds
 from cellcrawl.solvers.adaptive import state as layout
 from cellcrawl.solvers.adaptive.differences import interpolate
 from cellcrawl.solvers.adaptive.mesh import places
@@ -93,13 +92,13 @@ def instant(time: float, shape: Shape) -> Instant:
     return Instant(time=time, **_whole_cell(shape))
 
 
-def frame(time: float, shape: Shape, log_rate: np.ndarray, edge: np.ndarray) -> Frame:
+def frame(laws: Any, time: float, shape: Shape, log_rate: np.ndarray, edge: np.ndarray) -> Frame:
     """Return the cell on ``edge.shape[1]`` nodes.
 
     ``log_rate`` is any guess of ``log r`` at the solver's midpoints.
     """
     out = np.empty((_FRICTION + 1, edge.shape[1]))
-    _sample(shape.state, shape.work, edge, log_rate, out)
+    _sample(laws, shape.state, shape.work, edge, log_rate, out)
     return Frame(
         time=time,
         **{name: out[row] for row, name in enumerate(_ROWS)},
@@ -159,7 +158,12 @@ def _edge_shape(
 
 @kernel
 def _sample(
-    state: np.ndarray, work: np.ndarray, edge: np.ndarray, log_rate: np.ndarray, out: np.ndarray
+    laws: Any,
+    state: np.ndarray,
+    work: np.ndarray,
+    edge: np.ndarray,
+    log_rate: np.ndarray,
+    out: np.ndarray,
 ) -> None:
     """Fill ``out`` with the fields at equal arclengths; ``log_rate`` guesses ``log r``."""
     nodes, count = out.shape[1], log_rate.size
@@ -186,16 +190,16 @@ def _sample(
         out[4, i] = _weighted(n, first, weights)
         y[i] = log_rate[before]
     sigma, kappa, bound = scalars[TENSION], out[3], out[4]
-    failed = solve_off_rate(y, bound, sigma, kappa, edge[1], edge[5], edge[4])
+    failed = solve_bonds(laws, y, bound, sigma, kappa, edge)
     if failed != SOLVED:  # the edge left the model's range between the solver's midpoints
         for i in range(failed, nodes):
-            force = driving_force(sigma, kappa[i], edge[5, i], edge[4, i])
-            y[i] = max(balance(y[i], bound[i], edge[1, i], max(force, 0.0)), 0.0)
+            root = bond_force(laws, y[i], bound[i], sigma, kappa[i], edge, i)
+            y[i] = root if root == root else 0.0
     for i in range(nodes):
-        r = exponential(y[i])
+        r = off_rate(laws, y[i], edge, i)
         out[5, i] = r
-        out[_VELOCITY, i] = edge_velocity(y[i], r, edge[6, i], edge[3, i])
-        out[_FRICTION, i] = friction(y[i], r, bound[i], edge[1, i])
+        out[_VELOCITY, i] = velocity(laws, y[i], r, sigma, kappa[i], edge, i)
+        out[_FRICTION, i] = friction(laws, y[i], r, bound[i], edge, i)
 
 
 @kernel

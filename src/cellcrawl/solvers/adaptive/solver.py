@@ -59,6 +59,7 @@ class AdaptiveSolver(Solver):
         min_nodes: int = 64,
     ) -> None:
         self._conditions = conditions
+        self._laws = conditions.laws.compiled
         self._nodes = self.checked_nodes(nodes)
         self._rtol = real_number("rtol", rtol, 1e-10, 1e-2)
         counts = resolution.NODE_COUNTS
@@ -97,6 +98,7 @@ class AdaptiveSolver(Solver):
             if self._counters[drive.RESTARTING] and not self._restart():
                 return self._no_root(now)
             code = drive.run(
+                self._laws,
                 target,
                 end,
                 _local_tolerance(self._rtol),
@@ -125,7 +127,7 @@ class AdaptiveSolver(Solver):
 
     def frame(self, time: float) -> Frame:
         edge = self._conditions.edge(time, self._nodes)
-        return frame(time, self._shape(time), self._log_rate, edge)
+        return frame(self._laws, time, self._shape(time), self._log_rate, edge)
 
     def _shape(self, time: float) -> Shape:
         """Return the edge at ``time``, measured once."""
@@ -232,10 +234,10 @@ class AdaptiveSolver(Solver):
         nodes = layout.nodes_of(table)
         edge = self._midpoints(self.time)
         lay_out(*layout.fields(table[0]), _SHORT, 1, self._mesh, nodes)
-        renew_rates(self._log_rate, self._work)
+        renew_rates(self._laws, self._log_rate, edge, self._work)
         table[1:] = 0.0
         counters[drive.RATES] += 1
-        if not rates(table[0], table[1], self._log_rate, edge, self._mesh, self._work):
+        if not rates(self._laws, table[0], table[1], self._log_rate, edge, self._mesh, self._work):
             return False
         _, control[drive.CONTRAST] = resolution.missed(table[0], nodes, self._work)
         control[drive.FORMATION] = resolution.formation(layout.fields(table[0])[1], nodes)
@@ -264,7 +266,7 @@ class AdaptiveSolver(Solver):
         return *self._parameters(now + h), True
 
     def _parameters(self, time: float, *, before: bool = False) -> tuple[np.ndarray, np.ndarray]:
-        """Local parameters and G as `_edge` returns them, shapes (8, places) and (8, nodes)."""
+        """Local parameters and G as `_edge` returns them, (rows, places) and (rows, nodes)."""
         places = 1 if self._conditions.uniform else _PLACES
         local = self._conditions.edge(time, places, before=before)
         rate = self._conditions.tension_rate(time, before=before)
@@ -272,7 +274,7 @@ class AdaptiveSolver(Solver):
         return profile, np.repeat(profile[:, :1], layout.nodes_of(self._table), axis=1)
 
     def _midpoints(self, time: float) -> np.ndarray:
-        """Local parameters at the midpoints as they are now and G, shape (8, nodes)."""
+        """Local parameters at the midpoints as they are now and G, shape (rows, nodes)."""
         profile, edge = self._parameters(time)
         if profile.shape[1] > 1:
             _, _, density = layout.fields(self._table[0])
@@ -300,6 +302,7 @@ class AdaptiveSolver(Solver):
             edge = self._midpoints(self.time)
             self._counters[drive.RATES] += 1
             drive.bend_history(
+                self._laws,
                 self._control,
                 self._counters,
                 self._table,

@@ -10,12 +10,12 @@ import numpy as np
 from cellcrawl.errors import InputError
 from cellcrawl.linear import fastest_decay
 from cellcrawl.parameters import Conditions
-from cellcrawl.physics.force_balance import SOLVED, solve_off_rate
+from cellcrawl.physics.force_balance import SOLVED, solve_bonds
 from cellcrawl.solvers.base import (
     Breakdown,
     Frame,
     Solver,
-    pointwise_velocity_and_friction,
+    pointwise,
 )
 from cellcrawl.solvers.fixed_steps import ON_GRID, steps_towards
 from cellcrawl.solvers.paper import step as paper_step
@@ -51,6 +51,7 @@ class PaperSolver(Solver):
         dt: float | None = None,
     ) -> None:
         self._conditions = conditions
+        self._laws = conditions.laws.compiled
         self._nodes = nodes
         self._dt = _checked_step(dt, nodes, conditions)
         self._anchor = time  # steps are counted from here: the start, or the last break
@@ -108,8 +109,8 @@ class PaperSolver(Solver):
         center = tangent_angle.centroid(length, area, cosine, sine, x, z)
         origin_x = float(scalars[paper_step.ORIGIN_X])
         origin_y = float(scalars[paper_step.ORIGIN_Y])
-        off_rate = np.exp(y)
-        velocity, friction = pointwise_velocity_and_friction(off_rate, n, edge)
+        laws, tension = self._conditions.laws, float(scalars[paper_step.TENSION])
+        off_rate, velocity, friction = pointwise(laws, y, n, tension, kappa, edge)
         return Frame(
             time=time,
             x=x + origin_x,
@@ -120,7 +121,7 @@ class PaperSolver(Solver):
             off_rate=off_rate,
             normal_velocity=velocity,
             friction=friction,
-            tension=float(scalars[paper_step.TENSION]),
+            tension=tension,
             length=length,
             area=area,
             centroid_x=center[0] + origin_x,
@@ -180,7 +181,7 @@ class PaperSolver(Solver):
         area = tangent_angle.enclosed_area(curve.length, cosine, sine, x, z)
         self._scalars[:] = (curve.length, start.tension, *curve.origin, area, gap)
         y[:] = math.log(self._conditions.at(self.time).r_p)
-        failed = solve_off_rate(y, n, start.tension, kappa, edge[1], edge[5], edge[4])
+        failed = solve_bonds(self._laws, y, n, start.tension, kappa, edge)
         if failed != SOLVED:
             raise InputError(
                 f"the start has no off-rate r >= 1 that balances the forces at node {failed} "
@@ -199,7 +200,7 @@ class PaperSolver(Solver):
             if part == 1:
                 self._previous = (self.time, self._fields.copy(), self._scalars.copy())
             code, node, taken = paper_step.advance(
-                part, dt, rate, edge, theta, n, y, self._scalars, self._work
+                self._laws, part, dt, rate, edge, theta, n, y, self._scalars, self._work
             )
             self._steps += taken
             self._steps_from_anchor += taken
@@ -242,7 +243,7 @@ class PaperSolver(Solver):
         theta, n, y = fields
         kappa = np.empty_like(theta)
         tangent_angle.curvature(theta, scalars[paper_step.LENGTH], kappa)
-        solve_off_rate(y, n, scalars[paper_step.TENSION], kappa, edge[1], edge[5], edge[4])
+        solve_bonds(self._laws, y, n, scalars[paper_step.TENSION], kappa, edge)
         return fields, scalars
 
 

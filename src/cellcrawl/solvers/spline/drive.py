@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -40,12 +41,12 @@ LARGEST_TURN = 1.5  # radians from marker to marker beyond which a shape is not 
 LARGEST_PARTS = 20_000
 _RETRIES = 3  # each splits the step four times as fine
 
-EDGE_ROWS = 7
-WORK_ROWS = SHAPE_ROWS + EDGE_ROWS + 4 + max(LINKER_ROWS, SPREAD_ROWS)
+WORK_ROWS = SHAPE_ROWS + 4 + max(LINKER_ROWS, SPREAD_ROWS)
 
 
 @kernel
 def advance(
+    laws: Any,
     steps: int,
     dt: float,
     varies: bool,
@@ -61,7 +62,7 @@ def advance(
 ) -> tuple[int, int, int]:
     """Take up to ``steps`` steps of ``dt`` in place.
 
-    ``fields`` has shape (4, markers): x, y, n, log r; ``ends`` (2, 7, markers) and
+    ``fields`` has shape (4, markers): x, y, n, log r; ``ends`` (2, rows, markers) and
     ``tension_rates`` (2,) are the parameters at both ends of the call, which differ only if
     ``varies`` (then ``steps`` is 1); ``slopes`` has shape
     (STAGES, 4, markers) and ``work`` (WORK_ROWS, markers). ``before_fields`` and ``before_scalars``
@@ -77,8 +78,8 @@ def advance(
         Steps taken.
     """
     shape = work[:SHAPE_ROWS]
-    edge = work[SHAPE_ROWS : SHAPE_ROWS + EDGE_ROWS]
-    spare = work[SHAPE_ROWS + EDGE_ROWS :]
+    spare = work[SHAPE_ROWS:]
+    edge = np.empty(ends.shape[1:])
     measure(fields, shape)
     for taken in range(steps):
         copy(fields, before_fields)
@@ -88,7 +89,7 @@ def advance(
         if unevenness(shape) > UNEVEN:
             remesh(fields, shape, spare)
             enclose(scalars[AREA], fields, shape)
-            code, marker = solve_balance(fields, scalars[TENSION], shape, edge)
+            code, marker = solve_balance(laws, fields, scalars[TENSION], shape, edge)
             if code != BALANCED:
                 copy(before_fields, fields)
                 return code, marker, taken
@@ -97,7 +98,7 @@ def advance(
         turn, marker = sharpest_turn(shape)
         if turn > LARGEST_TURN:
             return UNRESOLVED, marker, taken
-        rate = fastest_explicit_rate(fields, scalars[TENSION], shape, edge, ZIGZAG)
+        rate = fastest_explicit_rate(laws, fields, scalars[TENSION], shape, edge, ZIGZAG)
         if not rate * dt < EXPLICIT_LIMIT * LARGEST_PARTS:
             return TOO_STIFF, marker, taken
         parts = math.floor(rate * dt / EXPLICIT_LIMIT) + 1
@@ -106,6 +107,7 @@ def advance(
             tension, area = scalars[TENSION], scalars[AREA]
             for part in range(parts):
                 code, marker, tension, area = step(
+                    laws,
                     dt / parts,
                     part / parts,
                     (part + 1) / parts,

@@ -10,6 +10,8 @@ in ``sigma - G A``, and nothing takes them away.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from cellcrawl._compile import kernel
@@ -59,6 +61,7 @@ def between_ends(ends: np.ndarray, part: float, out: np.ndarray) -> None:
 
 @kernel
 def step(
+    laws: Any,
     dt: float,
     begin: float,
     end: float,
@@ -79,7 +82,7 @@ def step(
     ----------
     begin, end : float
         Where the step lies between the times of ``ends`` and ``tension_rates``, if ``varies``.
-    ends : array, shape (2, 7, markers)
+    ends : array, shape (2, rows, markers)
         Parameters along the edge, linear in time between the two.
     tension_rates : array, shape (2,)
         ``G`` likewise.
@@ -87,7 +90,7 @@ def step(
         The area is the one that goes with the tension: ``dA = d sigma / G``.
     shape : array, shape (SHAPE_ROWS, markers)
         The `measure` of the markers before and after.
-    edge : array, shape (7, markers)
+    edge : array, shape (rows, markers)
         The parameters now; left at those of the end.
     slopes : array, shape (STAGES, 4, markers)
     work : array, shape (4 + LINKER_ROWS, markers)
@@ -121,10 +124,12 @@ def step(
             known = tension
             for j in range(i):
                 known += dt * _IMPLICIT[i, j] * tension_slopes[j]
-            code, marker, sigma = solve_tension(stage, sigma, known, implicit * rate, shape, edge)
+            code, marker, sigma = solve_tension(
+                laws, stage, sigma, known, implicit * rate, shape, edge
+            )
             if code != BALANCED:
                 return code, marker, tension, area
-        area_slopes[i] = rates(stage, shape, edge, own)
+        area_slopes[i] = rates(laws, stage, sigma, shape, edge, own)
         tension_slopes[i] = rate * area_slopes[i]
 
     for j in range(STAGES):
@@ -138,7 +143,7 @@ def step(
     measure(fields, shape)
     enclose(area, fields, shape)
     copy(stage[LOG_R:], fields[LOG_R:])
-    code, marker = solve_balance(fields, tension, shape, edge)
+    code, marker = solve_balance(laws, fields, tension, shape, edge)
     return code, marker, tension, area
 
 

@@ -47,6 +47,7 @@ class SplineSolver(Solver):
         dt: float = _USUAL_STEP,
     ) -> None:
         self._conditions = conditions
+        self._laws = conditions.laws.compiled
         self._nodes = self.checked_nodes(nodes)
         self._dt = real_number("dt", dt, 1e-7, 0.1)
         self._anchor = time  # steps are counted from here: the start, or the last break
@@ -93,7 +94,9 @@ class SplineSolver(Solver):
         return None
 
     def frame(self, time: float) -> Frame:
-        return frames.frame(self._at(time), self._conditions.edge(time, self._nodes))
+        return frames.frame(
+            self._conditions.laws, self._at(time), self._conditions.edge(time, self._nodes)
+        )
 
     def points(self, time: float) -> np.ndarray:
         even = frames.on_even_nodes(self._at(time).fields)
@@ -154,7 +157,7 @@ class SplineSolver(Solver):
                 f"{self._nodes} nodes are too few for this start: its edge turns by {turn:.2g} "
                 f"radians from node to node at node {marker}; give more nodes"
             )
-        code, marker = balance.solve_balance(fields, start.tension, shape, edge)
+        code, marker = balance.solve_balance(self._laws, fields, start.tension, shape, edge)
         if code != balance.BALANCED:
             raise InputError(
                 f"the start has no off-rate r >= 1 that balances the forces at node {marker} "
@@ -172,6 +175,7 @@ class SplineSolver(Solver):
         if varies:
             rates[1] = conditions.tension_rate(end, before=True)
         code, marker, taken = drive.advance(
+            self._laws,
             steps,
             dt,
             varies,
@@ -202,7 +206,7 @@ class SplineSolver(Solver):
         edge = self._conditions.edge(end, self._nodes)
         kept = fields[LOG_R].copy()
         code, marker = balance.solve_balance(
-            fields, float(self._scalars[drive.TENSION]), shape, edge
+            self._laws, fields, float(self._scalars[drive.TENSION]), shape, edge
         )
         if code == balance.BALANCED:
             return None
@@ -221,9 +225,13 @@ class SplineSolver(Solver):
         first = frames.State(self._before_time, self._before_fields, tension, angle)
         conditions, nodes = self._conditions, self._nodes
         first_rates = frames.rates_of_change(
-            first, conditions.edge(first.time, nodes), conditions.tension_rate(first.time)
+            conditions.laws,
+            first,
+            conditions.edge(first.time, nodes),
+            conditions.tension_rate(first.time),
         )
         last_rates = frames.rates_of_change(
+            conditions.laws,
             last,
             conditions.edge(last.time, nodes, before=True),
             conditions.tension_rate(last.time, before=True),
