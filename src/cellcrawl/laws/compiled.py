@@ -110,6 +110,7 @@ _made: dict[str, CompiledLaw] = {}
 
 
 def _traced(law: Law) -> Formulas:
+    law = _symbolic(law)
     phi, r, n, sigma, kappa = (symbol(name) for name in _STATE)
     p: Any = _Symbols(law)
     off_rate = _formula(law, "off_rate", law.off_rate(phi, p))
@@ -120,6 +121,14 @@ def _traced(law: Law) -> Formulas:
     binding = _formula(law, "binding", law.binding(phi, r, n, p))
     velocity = p.epsilon * (polymerization - retrograde)
     return Formulas(off_rate, velocity, friction, friction - pull, binding)
+
+
+def _symbolic(law: Law) -> Law:
+    """Return a law whose numbers are symbols, so that other numbers need no other code."""
+    made = object.__new__(type(law))
+    made.__dict__.update(law.__dict__)
+    made.values = {name: symbol(f"p.{name}") for name in law.values}  # type: ignore[misc]
+    return made
 
 
 def _formula(law: Law, name: str, made: Any) -> Expression:

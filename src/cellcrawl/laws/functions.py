@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from numba.core import types
@@ -79,10 +79,10 @@ _IN_KERNELS: Final[dict[str, Any]] = {
 }
 
 
-def register(key: str, source: str) -> None:
-    """Make the functions in ``source`` known to kernels under a law's key."""
+def register(key: str, source: str, also: Mapping[str, Any] | None = None) -> None:
+    """Make the functions in ``source``, which may call ``also``, known to kernels under a key."""
     if key not in _registered:
-        space = dict(_IN_KERNELS)
+        space = {**_IN_KERNELS, **(also or {})}
         exec(source, space)
         names = [line.split("(")[0][4:] for line in source.splitlines() if line.startswith("def ")]
         _registered[key] = {name: space[name] for name in names}
@@ -150,4 +150,21 @@ def partials(
     laws: Any, phi: float, r: float, n: float, sigma: float, kappa: float, edge: Any, i: int
 ) -> tuple[float, float, float, float, float, float, float, float, float]:
     """Slopes: balance by phi, n, sigma, kappa; velocity by phi, sigma, kappa; binding by phi, n."""
+    raise NotImplementedError
+
+
+@_by_law
+def surround(
+    around: Any,
+    data: Any,
+    time: float,
+    x: float,
+    y: float,
+    normal_x: float,
+    normal_y: float,
+    edge: Any,
+    local: Any,
+    i: int,
+) -> int:
+    """Fill what surroundings change of the local parameters of a node, from those in ``edge``."""
     raise NotImplementedError

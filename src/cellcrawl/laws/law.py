@@ -130,6 +130,10 @@ class Law(Described):
         """Rate of change of ``n`` at a material point, without diffusion."""
         return p.r_on * (1.0 - n) - r * n
 
+    def check(self, parameters: Any) -> str | None:
+        """Return why the law cannot be used with some `Parameters`, or None."""
+        return None
+
     @property
     def name(self) -> str:
         """Name of the law set."""

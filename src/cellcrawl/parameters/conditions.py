@@ -10,12 +10,16 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from cellcrawl.laws.law import LOCAL, PAPER, Law
 from cellcrawl.parameters.dimensionless import Parameters
 from cellcrawl.parameters.schedule import CONSTANT, Schedule
+
+if TYPE_CHECKING:
+    from cellcrawl.surroundings.base import CompiledSurroundings, Surroundings
 
 
 @dataclass(frozen=True)
@@ -25,6 +29,11 @@ class Conditions:
     parameters: Parameters
     schedule: Schedule = CONSTANT
     laws: Law = PAPER
+    surroundings: Surroundings | None = None
+
+    def around(self) -> CompiledSurroundings | None:
+        """Return the surroundings for kernels, None if there are none."""
+        return None if self.surroundings is None else self.surroundings.compiled(self.laws)
 
     @property
     def uniform(self) -> bool:

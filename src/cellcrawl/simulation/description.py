@@ -10,12 +10,15 @@ from typing import Any
 
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError, nearest_name
+from cellcrawl.laws.law import PAPER, Law
+from cellcrawl.laws.rest import CellAtRest, rest_state
 from cellcrawl.parameters import CONSTANT, DESCRIPTIONS, Conditions, Parameters, Schedule
 from cellcrawl.simulation.dataset import SCHEMA_VERSION, package_version
 from cellcrawl.simulation.events import crossing_at
 from cellcrawl.simulation.following import check_records
 from cellcrawl.solvers import SOLVERS, Solver
 from cellcrawl.starts import Eigenmode, FromOutline, PerturbedCircle, RandomPerturbation, Start
+from cellcrawl.surroundings.base import Surroundings
 from cellcrawl.validation import one_of, real_number, shown, table
 
 DEFAULT_SOLVER = "adaptive"
@@ -50,6 +53,8 @@ class RunDescription:
     solver: str = DEFAULT_SOLVER
     nodes: int | None = None
     schedule: Schedule = CONSTANT
+    laws: Law = PAPER
+    surroundings: Surroundings | None = None
     options: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -69,17 +74,35 @@ class RunDescription:
     @property
     def conditions(self) -> Conditions:
         """The parameters and how they change."""
-        return Conditions(self.parameters, self.schedule)
+        return Conditions(self.parameters, self.schedule, self.laws, self.surroundings)
 
     def solver_at_start(self) -> Solver:
         """Return the solver with the first state, or raise `InputError` if it cannot be had."""
         scheme, conditions = solver_named(self.solver), self.conditions
         assert self.nodes is not None
-        state = self.start.state(conditions.at(0.0), scheme.start_nodes(self.nodes, **self.options))
+        nodes = scheme.start_nodes(self.nodes, **self.options)
+        state = self.start.state(self._resting(conditions.at(0.0)), nodes)
         engine = scheme(state, conditions, nodes=self.nodes, **self.options)
         if crossing_at(engine, 0.0) is not None:
             raise InputError("the start crosses itself: the model needs a simple edge")
         return engine
+
+    def _resting(self, parameters: Parameters) -> Parameters:
+        """Return parameters with the resting circle of this run's law."""
+        if self.laws == PAPER:
+            return parameters
+        if isinstance(self.start, Eigenmode):
+            raise InputError("Eigenmode knows the paper's laws only: give another start")
+        return CellAtRest.of(parameters, rest_state(parameters, self.laws))
+
+    def _world(self) -> dict[str, Any]:
+        """Return laws and surroundings as plain values, where they are not the paper's."""
+        world: dict[str, Any] = {}
+        if self.laws != PAPER:
+            world["laws"] = self.laws.describe()
+        if self.surroundings is not None:
+            world["surroundings"] = self.surroundings.describe()
+        return world
 
     def identity(self, engine: Solver) -> dict[str, Any]:
         """Return what a saved run says of how it was made."""
@@ -93,6 +116,7 @@ class RunDescription:
             "save_every": self.save_every,
             "cellcrawl_version": package_version(),
             "schema_version": SCHEMA_VERSION,
+            **self._world(),
         }
 
     def describe(self) -> dict[str, Any]:
@@ -106,6 +130,7 @@ class RunDescription:
             "options": {**_usual_options(self.solver), **self.options},
             "save_every": self.save_every,
             "t_end": self.t_end,
+            **self._world(),
         }
 
 

@@ -119,6 +119,7 @@ def change_step(
 @woven_kernel
 def solve_step(
     laws: Any,
+    around: Any,
     tolerance: float,
     contrast: float,
     control: np.ndarray,
@@ -134,6 +135,7 @@ def solve_step(
     """Solve the implicit formula for the state a step ahead by simplified Newton iterations."""
     order = counters[ORDER]
     c = control[STEP] / LEADING[order]
+    time = control[TIME] + control[STEP]
     now, correction = table[_ITERATE], table[_CORRECTION]
     residual, history = table[_RESIDUAL], table[_HISTORY]
     predict(order, table, now, history)
@@ -155,10 +157,10 @@ def solve_step(
     last = 0.0
     for iteration in range(_ITERATIONS):
         counters[RATES] += 1
-        if not rates(laws, now, residual, y, edge, mesh, work):
+        if not rates(laws, around, time, now, residual, y, edge, mesh, work):
             return ROOTLESS
         if iteration == 0 and (stale or control[FACTORED] != c):
-            factor(laws, c, now, y, edge, mesh, work, matrix)
+            factor(laws, around, c, now, y, edge, mesh, work, matrix)
             control[FACTORED] = c
             counters[MATRIX_AGE] = 0
             counters[FACTORINGS] += 1
@@ -185,6 +187,7 @@ def solve_step(
 
 def bend_history(
     laws: Any,
+    around: Any,
     control: np.ndarray,
     counters: np.ndarray,
     table: np.ndarray,
@@ -206,13 +209,13 @@ def bend_history(
     fields = state[:span], state[span : 2 * span], state[2 * span : 3 * span]
     lay_out(*fields, h, order, mesh, nodes)
     renew_rates(laws, y, edge, work)
-    if not rates(laws, state, residual, y, edge, mesh, work):
+    if not rates(laws, around, control[TIME], state, residual, y, edge, mesh, work):
         return
     residual *= h
     for j in range(1, order + 1):
         residual -= table[j] / j
     c = h / LEADING[order]
-    factor(laws, c, state, y, edge, mesh, work, matrix)
+    factor(laws, around, c, state, y, edge, mesh, work, matrix)
     solve(c, state, mesh, matrix, residual)
     table[1] += residual
 
@@ -252,6 +255,7 @@ def choose_step(
 @kernel
 def run(
     laws: Any,
+    around: Any,
     target: float,
     end: float,
     tolerance: float,
@@ -291,6 +295,7 @@ def run(
         contrast = min(max(control[CONTRAST], _LEAST_CONTRAST), 1.0)
         ended = solve_step(
             laws,
+            around,
             tolerance,
             contrast,
             control,

@@ -15,16 +15,17 @@ import numpy as np
 
 from cellcrawl._compile import kernel
 from cellcrawl.laws.functions import partials
-from cellcrawl.solvers.adaptive.mesh import FINE, FINE_NODE
-from cellcrawl.solvers.adaptive.rates import (
+from cellcrawl.solvers.adaptive.entries import (
     AREA,
     LENGTH,
     ORIGIN_X,
     ORIGIN_Y,
-    RATE,
     TENSION,
     TENSION_RATE,
 )
+from cellcrawl.solvers.adaptive.mesh import FINE, FINE_NODE
+from cellcrawl.solvers.adaptive.place import LOCAL
+from cellcrawl.solvers.adaptive.rates import RATE
 from cellcrawl.solvers.adaptive.staggered import HALO, difference_ahead, dot, fill_halo
 from cellcrawl.solvers.cyclic import FACTOR_ROWS, factor_cyclic_tridiagonal, solve_factored
 
@@ -60,6 +61,7 @@ def _blend(a: np.ndarray, out: np.ndarray) -> None:
 @kernel
 def factor(
     laws: Any,
+    around: Any,
     c: float,
     state: np.ndarray,
     y: np.ndarray,
@@ -73,6 +75,9 @@ def factor(
     span = nodes + 2 * HALO
     w, n, g = state[:span], state[span : 2 * span], state[2 * span : 3 * span]
     scalars = state[3 * span :]
+    local = edge
+    if around is not None:
+        local = around[LOCAL]
     fine, fine_node = mesh[FINE], mesh[FINE_NODE]
     per_spacing = nodes / scalars[LENGTH]
     winding = 2.0 * math.pi / scalars[LENGTH]
@@ -88,7 +93,7 @@ def factor(
         bend[i] = winding + per_spacing * difference_ahead(w, j)
         kappa = bend[i] * fine[j]
         by_phi, by_n, by_sigma, by_kappa, u_phi, u_sigma, u_kappa, b_phi, b_n = partials(
-            laws, y[i], rate[i], n[j], sigma, kappa, edge, i
+            laws, y[i], rate[i], n[j], sigma, kappa, local, i
         )
         yielding = -1.0 / by_phi  # how phi answers to a balance that is off
         share, slip = u_phi * yielding, b_phi * yielding
@@ -99,12 +104,12 @@ def factor(
         lower[i] = c * slip * by_sigma * g[j]
         smoothing = max(-share * by_kappa - u_kappa, 0.0) * fine[j]
         loosening = c * max(-slip * by_kappa, 0.0) * fine[j]
-        loosened[i] = loosening / (kept + spreading * edge[2, i] * fine[j] * fine[j])
+        loosened[i] = loosening / (kept + spreading * local[2, i] * fine[j] * fine[j])
         pulled[j] = smoothing + by_linkers[i] * loosened[i]
     _blend(lower, answer)
     fill_halo(loss, nodes)
     fill_halo(pulled, nodes)
-    diffusivity = edge[2]
+    diffusivity = local[2]
     spread = c * per_spacing**2 * _COMPACT_SCALE
     carried = 0.25 * c * per_spacing
     for i in range(np.uint64(nodes)):
@@ -131,9 +136,9 @@ def factor(
         asked[i] = by_linkers[i] * inner[i]
     pull_back = dot(by_tension, inner)
     slope = pull_back + dot(asked, answer)
-    gain = c * edge[TENSION_RATE, 0] / per_spacing
+    gain = c * local[TENSION_RATE, 0] / per_spacing
     matrix[SCALARS, 0] = gain
-    matrix[SCALARS, 2] = edge[TENSION_RATE, 0]
+    matrix[SCALARS, 2] = local[TENSION_RATE, 0]
     matrix[SCALARS, 1] = 1.0 / max(1.0 - gain * slope, _LEAST_PIVOT)
 
 

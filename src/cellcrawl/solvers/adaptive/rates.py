@@ -23,7 +23,16 @@ from cellcrawl.laws.functions import (
     velocity,
 )
 from cellcrawl.physics.force_balance import SOLVED, halley_step, solve_bonds
+from cellcrawl.solvers.adaptive.entries import (
+    AREA,
+    LENGTH,
+    ORIGIN_X,
+    ORIGIN_Y,
+    TENSION,
+    TENSION_RATE,
+)
 from cellcrawl.solvers.adaptive.mesh import CHANGE, FINE, FINE_NODE
+from cellcrawl.solvers.adaptive.place import LOCAL, surround_midpoints
 from cellcrawl.solvers.adaptive.staggered import (
     HALO,
     cell_mean,
@@ -37,10 +46,6 @@ from cellcrawl.solvers.adaptive.staggered import (
     total,
 )
 
-LENGTH, TENSION, AREA, ORIGIN_X, ORIGIN_Y = range(5)  # scalars, after the two fields
-SCALARS: Final = 8  # room kept for them
-FIELDS: Final = 3
-TENSION_RATE: Final = -1  # row of `edge`, after the law's own
 WORK_ROWS: Final = 6
 RATE: Final = 4  # row of `work` that keeps r beside the last y, from stage to stage
 _HALO = np.uint64(HALO)
@@ -104,6 +109,8 @@ def velocities(
 @kernel
 def rates(
     laws: Any,
+    around: Any,
+    time: float,
     state: np.ndarray,
     out: np.ndarray,
     y: np.ndarray,
@@ -112,6 +119,8 @@ def rates(
     work: np.ndarray,
 ) -> bool:
     """Write the rates of change of ``state`` to ``out``; False where there is no off-rate.
+
+    ``around`` is None or what `place.Around` holds, which then has the parameters at ``time``.
 
     Fills the halos of ``state``. ``y`` is the last ``phi`` and becomes the new one. ``edge``
     holds the law's parameters at the midpoints and in its last row G, (rows, nodes); ``mesh`` what
@@ -126,7 +135,14 @@ def rates(
     length = scalars[LENGTH]
     fill_halo(w, nodes)
     fill_halo(n, nodes)
-    if not (length > 0.0 and velocities(laws, w, n, length, scalars[TENSION], edge, fine, y, work)):
+    local = edge
+    if around is not None:
+        local = around[LOCAL]
+        if length > 0.0:
+            surround_midpoints(around, time, w, g, scalars, edge)
+    if not (
+        length > 0.0 and velocities(laws, w, n, length, scalars[TENSION], local, fine, y, work)
+    ):
         return False
     spacing = length / nodes
     per_spacing = nodes / length
@@ -153,14 +169,14 @@ def rates(
     fill_halo(slide, nodes)
     fill_halo(flux, nodes)
     fill_halo(stretch, nodes)
-    diffusivity = edge[2]
+    diffusivity = local[2]
     for i in range(np.uint64(nodes)):
         j = i + _HALO
         spread = diffusivity[i] * (per_spacing * fine[j]) * difference_ahead(flux, j)
         n_t[j] = bind[j] + spread + mean_ahead(stretch, j)
     first_speed = mean_behind(speed, _HALO)
     scalars_t[LENGTH] = length * mean_stretch
-    scalars_t[TENSION] = edge[TENSION_RATE, 0] * area_t
+    scalars_t[TENSION] = local[TENSION_RATE, 0] * area_t
     scalars_t[AREA] = area_t
     scalars_t[ORIGIN_X] = first_speed * math.sin(w[HALO])
     scalars_t[ORIGIN_Y] = -first_speed * math.cos(w[HALO])

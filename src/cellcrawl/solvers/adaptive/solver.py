@@ -15,6 +15,7 @@ from cellcrawl.solvers.adaptive.differences import DIFFERENCES
 from cellcrawl.solvers.adaptive.frame import Shape, frame, instant, shape_between
 from cellcrawl.solvers.adaptive.mesh import MESH_ROWS, edge_on_mesh, hold, lay_out
 from cellcrawl.solvers.adaptive.newton import MATRIX_ROWS
+from cellcrawl.solvers.adaptive.place import around
 from cellcrawl.solvers.adaptive.projection import project
 from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, renew_rates
 from cellcrawl.solvers.adaptive.staggered import HALO
@@ -60,6 +61,7 @@ class AdaptiveSolver(Solver):
     ) -> None:
         self._conditions = conditions
         self._laws = conditions.laws.compiled
+        self._compiled_surroundings = conditions.around()
         self._nodes = self.checked_nodes(nodes)
         self._rtol = real_number("rtol", rtol, 1e-10, 1e-2)
         counts = resolution.NODE_COUNTS
@@ -99,6 +101,7 @@ class AdaptiveSolver(Solver):
                 return self._no_root(now)
             code = drive.run(
                 self._laws,
+                self._around,
                 target,
                 end,
                 _local_tolerance(self._rtol),
@@ -127,7 +130,9 @@ class AdaptiveSolver(Solver):
 
     def frame(self, time: float) -> Frame:
         edge = self._conditions.edge(time, self._nodes)
-        return frame(self._laws, time, self._shape(time), self._log_rate, edge)
+        return frame(
+            self._laws, self._compiled_surroundings, time, self._shape(time), self._log_rate, edge
+        )
 
     def _shape(self, time: float) -> Shape:
         """Return the edge at ``time``, measured once."""
@@ -223,6 +228,8 @@ class AdaptiveSolver(Solver):
         self._work = np.zeros((WORK_ROWS, nodes + 2 * HALO))
         self._mesh = np.zeros((MESH_ROWS, nodes + 2 * HALO))
         self._matrix = np.zeros((MATRIX_ROWS, nodes))
+        rows = len(self._conditions.laws.rows) + 1
+        self._around = around(self._compiled_surroundings, rows, nodes)
         self._control[drive.FACTORED] = 0.0
         self._edges: tuple[float, np.ndarray, np.ndarray] | None = None
         self._tally[0] = min(self._tally[0] or nodes, nodes)
@@ -237,7 +244,17 @@ class AdaptiveSolver(Solver):
         renew_rates(self._laws, self._log_rate, edge, self._work)
         table[1:] = 0.0
         counters[drive.RATES] += 1
-        if not rates(self._laws, table[0], table[1], self._log_rate, edge, self._mesh, self._work):
+        if not rates(
+            self._laws,
+            self._around,
+            self.time,
+            table[0],
+            table[1],
+            self._log_rate,
+            edge,
+            self._mesh,
+            self._work,
+        ):
             return False
         _, control[drive.CONTRAST] = resolution.missed(table[0], nodes, self._work)
         control[drive.FORMATION] = resolution.formation(layout.fields(table[0])[1], nodes)
@@ -303,6 +320,7 @@ class AdaptiveSolver(Solver):
             self._counters[drive.RATES] += 1
             drive.bend_history(
                 self._laws,
+                self._around,
                 self._control,
                 self._counters,
                 self._table,

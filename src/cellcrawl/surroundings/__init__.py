@@ -1,0 +1,52 @@
+"""What a cell crawls in: patterns, stiffness, walls, forces and fields, in space and time.
+
+Each changes local parameters where the edge is. Several may be given together; each sees what the
+earlier have made of the parameters::
+
+    around = [cc.surroundings.Stripes(period=2.0, between=0.0), cc.surroundings.UniformForce(x=0.1)]
+    run = cc.simulate(cc.Parameters(r_on=26), surroundings=around)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from cellcrawl.errors import InputError
+from cellcrawl.surroundings.base import Place, Surrounding, Surroundings
+from cellcrawl.surroundings.fields import ElectricField, Gradient, UniformForce
+from cellcrawl.surroundings.patterns import Island, Pattern, Stripes
+from cellcrawl.surroundings.walls import Channel, Walls
+from cellcrawl.validation import shown
+
+__all__ = [
+    "Channel",
+    "ElectricField",
+    "Gradient",
+    "Island",
+    "Pattern",
+    "Place",
+    "Stripes",
+    "Surrounding",
+    "Surroundings",
+    "UniformForce",
+    "Walls",
+    "as_surroundings",
+]
+
+
+def as_surroundings(given: Any) -> Surroundings | None:
+    """Return surroundings from themselves, one `Surrounding`, some, or None.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    if given is None or isinstance(given, Surroundings):
+        return given if given is None or given.parts else None
+    if isinstance(given, Surrounding):
+        return Surroundings([given])
+    if isinstance(given, Sequence) and not isinstance(given, str):
+        return Surroundings(given) if len(given) else None
+    raise InputError(f"surroundings must be of cellcrawl.surroundings, not {shown(given)}")
