@@ -12,13 +12,13 @@ from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.laws import as_law
 from cellcrawl.laws.law import PAPER
+from cellcrawl.linear.any_law import law_growth_rates
 from cellcrawl.linear.characteristic import (
     characteristic,
     checked_shapes,
     checked_values,
     checked_wavenumbers,
 )
-from cellcrawl.linear.any_law import law_growth_rates
 from cellcrawl.linear.quadratic import ordered_roots
 from cellcrawl.parameters import Parameters
 
@@ -55,9 +55,7 @@ def base_state(parameters: Parameters) -> BaseState:
 
 
 @checked
-def growth_rates(
-    parameters: Parameters, k: Any, *, laws: Any = None, **values: Any
-) -> np.ndarray:
+def growth_rates(parameters: Parameters, k: Any, *, laws: Any = None, **values: Any) -> np.ndarray:
     """Growth rates of wavenumber ``k``, both roots of the characteristic equation.
 
     Parameters

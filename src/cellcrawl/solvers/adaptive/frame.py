@@ -19,7 +19,6 @@ from cellcrawl.solvers.adaptive import state as layout
 from cellcrawl.solvers.adaptive.differences import interpolate
 from cellcrawl.solvers.adaptive.entries import FIELDS, LENGTH, ORIGIN_X, ORIGIN_Y, SCALARS, TENSION
 from cellcrawl.solvers.adaptive.mesh import places
-from cellcrawl.solvers.adaptive.place import surround_nodes
 from cellcrawl.solvers.adaptive.projection import (
     COSINE,
     SINE,
@@ -32,6 +31,7 @@ from cellcrawl.solvers.adaptive.projection import (
 )
 from cellcrawl.solvers.adaptive.staggered import HALO, difference_ahead, fill_halo, mean_ahead
 from cellcrawl.solvers.base import Frame, Instant
+from cellcrawl.surroundings.place import placed
 
 KAPPA, PLACE = COSINE, SINE  # rows that hold these once the tangent has been used
 _HALO = np.uint64(HALO)
@@ -96,10 +96,7 @@ def frame(
     out = np.empty((_FRICTION + 1, edge.shape[1]))
     y = np.empty(edge.shape[1])
     _sample(shape.state, shape.work, log_rate, y, out)
-    if around is not None:
-        local = edge.copy()
-        surround_nodes(around, around.data, time, *out[:3], edge, local)
-        edge = local
+    edge = placed(around, time, out[0], out[1], (np.cos(out[2]), np.sin(out[2])), edge)
     _balance(laws, float(layout.scalars(shape.state)[TENSION]), edge, y, out)
     return Frame(
         time=time,

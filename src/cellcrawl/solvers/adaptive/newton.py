@@ -24,10 +24,10 @@ from cellcrawl.solvers.adaptive.entries import (
     TENSION_RATE,
 )
 from cellcrawl.solvers.adaptive.mesh import FINE, FINE_NODE
-from cellcrawl.solvers.adaptive.place import LOCAL
 from cellcrawl.solvers.adaptive.rates import RATE
 from cellcrawl.solvers.adaptive.staggered import HALO, difference_ahead, dot, fill_halo
 from cellcrawl.solvers.cyclic import FACTOR_ROWS, factor_cyclic_tridiagonal, solve_factored
+from cellcrawl.surroundings.place import LOCAL
 
 # rows of a matrix: how U answers to n and to sigma, how n answers to sigma within a step, g kappa,
 # a few numbers, g times the first

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, Final
 
 import numpy as np
@@ -21,9 +20,9 @@ from cellcrawl.solvers.adaptive.projection import (
 )
 from cellcrawl.solvers.adaptive.staggered import HALO, mean_ahead
 from cellcrawl.surroundings.base import CompiledSurroundings
+from cellcrawl.surroundings.place import COMPILED, DATA, LOCAL
 
-# what kernels get of surroundings: compiled, their numbers, parameters in place, room to work in
-COMPILED, DATA, LOCAL, ROOM = range(4)
+ROOM = 3  # after those: room to work in
 Around = tuple[CompiledSurroundings, np.ndarray, np.ndarray, np.ndarray]
 _HALO: Final = np.uint64(HALO)
 
@@ -54,21 +53,3 @@ def surround_midpoints(
         y = mean_ahead(room[Y], j) + scalars[ORIGIN_Y]
         cosine, sine = room[COSINE, j], room[SINE, j]
         surround(around[COMPILED], around[DATA], time, x, y, sine, -cosine, edge, local, i)
-
-
-@kernel
-def surround_nodes(
-    compiled: Any,
-    data: np.ndarray,
-    time: float,
-    x: np.ndarray,
-    y: np.ndarray,
-    theta: np.ndarray,
-    edge: np.ndarray,
-    local: np.ndarray,
-) -> None:
-    """The same for nodes whose positions and tangent are known, arrays of shape (nodes,)."""
-    local[:] = edge
-    for i in range(x.size):
-        sine, cosine = math.sin(theta[i]), math.cos(theta[i])
-        surround(compiled, data, time, x[i], y[i], sine, -cosine, edge, local, i)

@@ -32,7 +32,7 @@ from cellcrawl.solvers.adaptive.entries import (
     TENSION_RATE,
 )
 from cellcrawl.solvers.adaptive.mesh import CHANGE, FINE, FINE_NODE
-from cellcrawl.solvers.adaptive.place import LOCAL, surround_midpoints
+from cellcrawl.solvers.adaptive.place import surround_midpoints
 from cellcrawl.solvers.adaptive.staggered import (
     HALO,
     cell_mean,
@@ -45,6 +45,7 @@ from cellcrawl.solvers.adaptive.staggered import (
     running_sum,
     total,
 )
+from cellcrawl.surroundings.place import LOCAL
 
 WORK_ROWS: Final = 6
 RATE: Final = 4  # row of `work` that keeps r beside the last y, from stage to stage

@@ -25,6 +25,7 @@ from cellcrawl.solvers.paper.tangent_angle import (
     points,
     tangential_velocity,
 )
+from cellcrawl.surroundings.place import LOCAL, surround_edge
 
 LENGTH, TENSION, ORIGIN_X, ORIGIN_Y, AREA, CLOSURE = range(6)  # rows of `scalars`
 STEPPED = 0
@@ -70,6 +71,8 @@ def crank_nicolson(
 @kernel
 def advance(
     laws: Any,
+    around: Any,
+    time: float,
     steps: int,
     dt: float,
     tension_rate: float,
@@ -80,7 +83,10 @@ def advance(
     scalars: np.ndarray,
     work: np.ndarray,
 ) -> tuple[int, int, int]:
-    """Take up to ``steps`` steps in place.
+    """Take up to ``steps`` steps in place, from ``time``.
+
+    ``around`` is None, or surroundings at work, as in `cellcrawl.surroundings.place`; it then holds
+    the parameters where the edge is at ``time``.
 
     ``edge`` holds the law's parameters, shape (rows, nodes); ``work`` has shape
     (WORK_ROWS, nodes).
@@ -101,12 +107,15 @@ def advance(
     new_theta, new_n, new_y, spare = work[9], work[10], work[11], work[12:18]
     bind, loss = work[18], work[19]
     new = scalars.copy()
+    local = edge
+    if around is not None:
+        local = around[LOCAL]
     for step in range(steps):
         length = scalars[LENGTH]
         curvature(theta, length, kappa)
         for i in range(nodes):
-            r[i] = off_rate(laws, y[i], edge, i)
-            speed[i] = velocity(laws, y[i], r[i], scalars[TENSION], kappa[i], edge, i)
+            r[i] = off_rate(laws, y[i], local, i)
+            speed[i] = velocity(laws, y[i], r[i], scalars[TENSION], kappa[i], local, i)
         central_difference(speed, length / nodes, 0.0, slope)
         growth = tangential_velocity(kappa, speed, length, tangential, spare)
 
@@ -130,14 +139,19 @@ def advance(
 
         new_n[:] = n
         for i in range(nodes):
-            bind[i] = binding(laws, y[i], r[i], n[i], edge, i)
-            *_, loss[i] = partials(laws, y[i], r[i], n[i], 0.0, 0.0, edge, i)
+            bind[i] = binding(laws, y[i], r[i], n[i], local, i)
+            _, _, _, _, _, _, _, _, loss[i] = partials(laws, y[i], r[i], n[i], 0.0, 0.0, local, i)
         spacing = new[LENGTH] / nodes
-        crank_nicolson(new_n, bind, loss, tangential, spacing, dt, edge[2], spare)
+        crank_nicolson(new_n, bind, loss, tangential, spacing, dt, local[2], spare)
         new_y[:] = y
         if not (math.isfinite(new[TENSION]) and math.isfinite(new_n.sum() + kappa.sum())):
             return NOT_FINITE, _first_not_finite(new_n, kappa), step
-        failed = solve_bonds(laws, new_y, new_n, new[TENSION], kappa, edge)
+        if around is not None:
+            for i in range(nodes):
+                x[i] += new[ORIGIN_X]
+                z[i] += new[ORIGIN_Y]
+            surround_edge(around, time + (step + 1) * dt, x, z, cosine, sine, edge)
+        failed = solve_bonds(laws, new_y, new_n, new[TENSION], kappa, local)
         if failed != SOLVED:
             return NO_ROOT, failed, step
 

@@ -63,7 +63,7 @@ def solve_tension(
             r = off_rate(laws, y[i], edge, i)
             g, kappa = shape[SPEED, i], shape[KAPPA, i]
             area_rate += g * velocity(laws, y[i], r, sigma, kappa, edge, i)
-            by_phi, _, by_sigma, _, u_phi, u_sigma, *_ = partials(
+            by_phi, _, by_sigma, _, u_phi, u_sigma, _, _, _ = partials(
                 laws, y[i], r, n[i], sigma, kappa, edge, i
             )
             slope += g * (u_sigma - u_phi * by_sigma / by_phi)

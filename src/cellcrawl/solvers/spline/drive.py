@@ -19,6 +19,8 @@ from cellcrawl.solvers.spline.outline import (
     SHAPE_ROWS,
     XU,
     YU,
+    X,
+    Y,
     copy,
     enclose,
     measure,
@@ -28,6 +30,7 @@ from cellcrawl.solvers.spline.outline import (
 from cellcrawl.solvers.spline.periodic import ZIGZAG
 from cellcrawl.solvers.spline.remeshing import SPREAD_ROWS, remesh
 from cellcrawl.solvers.spline.runge_kutta import EXPLICIT_LIMIT, between_ends, step
+from cellcrawl.surroundings.place import LOCAL, surround_edge
 
 # `scalars`: the tangent's angle at the first marker, continuous; the area the tension goes with
 TENSION, ANGLE, AREA = range(3)
@@ -47,6 +50,8 @@ WORK_ROWS = SHAPE_ROWS + 4 + max(LINKER_ROWS, SPREAD_ROWS)
 @kernel
 def advance(
     laws: Any,
+    around: Any,
+    time: float,
     steps: int,
     dt: float,
     varies: bool,
@@ -60,7 +65,9 @@ def advance(
     slopes: np.ndarray,
     work: np.ndarray,
 ) -> tuple[int, int, int]:
-    """Take up to ``steps`` steps of ``dt`` in place.
+    """Take up to ``steps`` steps of ``dt`` in place, from ``time``.
+
+    ``around`` is None, or surroundings at work, as in `cellcrawl.surroundings.place`.
 
     ``fields`` has shape (4, markers): x, y, n, log r; ``ends`` (2, rows, markers) and
     ``tension_rates`` (2,) are the parameters at both ends of the call, which differ only if
@@ -89,7 +96,12 @@ def advance(
         if unevenness(shape) > UNEVEN:
             remesh(fields, shape, spare)
             enclose(scalars[AREA], fields, shape)
-            code, marker = solve_balance(laws, fields, scalars[TENSION], shape, edge)
+            local = edge
+            if around is not None:
+                now = time + taken * dt
+                surround_edge(around, now, fields[X], fields[Y], shape[XU], shape[YU], edge)
+                local = around[LOCAL]
+            code, marker = solve_balance(laws, fields, scalars[TENSION], shape, local)
             if code != BALANCED:
                 copy(before_fields, fields)
                 return code, marker, taken
@@ -98,7 +110,12 @@ def advance(
         turn, marker = sharpest_turn(shape)
         if turn > LARGEST_TURN:
             return UNRESOLVED, marker, taken
-        rate = fastest_explicit_rate(laws, fields, scalars[TENSION], shape, edge, ZIGZAG)
+        local = edge
+        if around is not None:
+            now = time + taken * dt
+            surround_edge(around, now, fields[X], fields[Y], shape[XU], shape[YU], edge)
+            local = around[LOCAL]
+        rate = fastest_explicit_rate(laws, fields, scalars[TENSION], shape, local, ZIGZAG)
         if not rate * dt < EXPLICIT_LIMIT * LARGEST_PARTS:
             return TOO_STIFF, marker, taken
         parts = math.floor(rate * dt / EXPLICIT_LIMIT) + 1
@@ -108,6 +125,8 @@ def advance(
             for part in range(parts):
                 code, marker, tension, area = step(
                     laws,
+                    around,
+                    time + (taken + part / parts) * dt,
                     dt / parts,
                     part / parts,
                     (part + 1) / parts,
