@@ -163,7 +163,9 @@ def test_tension_solves_its_own_equation_however_stiff(shape_modes, bound_modes,
     fields = smooth_cell(64, shape_modes, bound_modes)
     shape = measured(fields)
     edge = Conditions(cc.Parameters()).edge(0.0, 64)
-    code, _, sigma = balance.solve_tension(PAPER.compiled, fields, 600.0, 900.0, weight, shape, edge)
+    code, _, sigma = balance.solve_tension(
+        PAPER.compiled, fields, 600.0, 900.0, weight, shape, edge
+    )
     assert code == balance.BALANCED
     swept = balance.rates(PAPER.compiled, fields, sigma, shape, edge, np.empty((3, 64)))
     assert sigma == pytest.approx(900.0 + weight * swept, rel=1e-9)

@@ -18,13 +18,14 @@ Derivatives and compiled code are made from the formulas.
 from __future__ import annotations
 
 import importlib
+from collections.abc import Mapping
 from typing import Any, Final
 
 from cellcrawl.errors import InputError, nearest_name
 from cellcrawl.laws.catch_slip import CatchSlip
 from cellcrawl.laws.check import check
 from cellcrawl.laws.expressions import cos, exp, log, maximum, minimum, sin, sqrt, tanh, where
-from cellcrawl.laws.law import PAPER, Law, Paper, Parameter
+from cellcrawl.laws.law import PAPER, Law, Paper, Parameter, described
 from cellcrawl.laws.load import PolymerizationUnderLoad
 from cellcrawl.laws.myosin import SweptMyosin
 from cellcrawl.laws.rest import RestState, rest_state, rest_states
@@ -68,7 +69,7 @@ __all__ = [
 
 
 def as_law(given: Any) -> Law:
-    """Return a law set from itself, its class, the name of a shipped one or ``module:Class``.
+    """Return a law set from itself, its class, a name, ``module:Class`` or what describes it.
 
     Raises
     ------
@@ -79,6 +80,9 @@ def as_law(given: Any) -> Law:
         return given
     if isinstance(given, type) and issubclass(given, Law):
         return given()
+    if isinstance(given, Mapping):
+        found: Law = described(given, Law, "law set")
+        return found
     if not isinstance(given, str):
         raise InputError(
             f"laws must be a law set of cellcrawl.laws or the name of one, not {shown(given)}"
@@ -89,7 +93,7 @@ def as_law(given: Any) -> Law:
     if not separator:
         raise InputError(f"there is no law set {shown(given)}: {nearest_name(given, SHIPPED)}")
     try:
-        found = getattr(importlib.import_module(module), name)
+        imported = getattr(importlib.import_module(module), name)
     except (ImportError, AttributeError, ValueError) as error:
         raise InputError(f"the law set {shown(given)} cannot be imported: {error}") from None
-    return as_law(found)
+    return as_law(imported)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 
@@ -30,7 +30,7 @@ class Expression:
     """A formula: an operation and what it works on. Equal ones are one object."""
 
     __slots__ = ("operands", "operation")
-    _made: dict[tuple[Any, ...], Expression] = {}
+    _made: ClassVar[dict[tuple[Any, ...], Expression]] = {}
     operation: str
     operands: tuple[Any, ...]
 
@@ -334,7 +334,8 @@ def _made_derivative(
         same = if_true is if_false
         return if_true if same else Expression("where", condition, if_true, if_false)
     slopes = [_derivative(operand, by, known) for operand in operands]
-    a, da = operands[0], slopes[0]
+    a: Expression = operands[0]
+    da: Expression = slopes[0]
     if operation == "+":
         return da + slopes[1]
     if operation == "-":
@@ -344,9 +345,12 @@ def _made_derivative(
     if operation == "/":
         return (da - node * slopes[1]) / operands[1]
     if operation == "**":
-        b, db = operands[1], slopes[1]
-        return b * a ** (b - 1.0) * da + (node * log(a) * db if _value(db) != 0.0 else 0.0)
-    return _OUTER[operation](a, node) * da
+        b: Expression = operands[1]
+        db = slopes[1]
+        moving: Expression = b * a ** (b - 1.0) * da
+        return moving + node * log(a) * db if _value(db) != 0.0 else moving
+    outer: Expression = _OUTER[operation](a, node)
+    return outer * da
 
 
 _OUTER: Final[dict[str, Any]] = {

@@ -24,7 +24,7 @@ from cellcrawl._compile import inlined_kernel
 from cellcrawl.laws import expressions
 from cellcrawl.physics.exponential import exponential, growth
 
-_OPTIONS: Final = {
+_OPTIONS: Final[Any] = {
     "error_model": "numpy",
     "forceinline": True,
     "no_cpython_wrapper": True,
@@ -49,12 +49,12 @@ class Compiled:
         self._numba_type_ = LawType(key)  # where dispatch from Python looks first
 
 
-@unbox(LawType)
+@unbox(LawType)  # type: ignore[no-untyped-call, untyped-decorator]
 def _unboxed(kind: LawType, value: Any, context: Any) -> NativeValue:
     return NativeValue(context.context.get_dummy_value())
 
 
-@lower_constant(LawType)
+@lower_constant(LawType)  # type: ignore[no-untyped-call, untyped-decorator]
 def _constant(context: Any, builder: Any, kind: LawType, value: Any) -> Any:
     return context.get_dummy_value()
 

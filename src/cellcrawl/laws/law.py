@@ -71,6 +71,9 @@ class Described:
         """Return the same with other numbers."""
         return type(self)(**{**self.values, **values})
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "compiled"}
+
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Described) and self.describe() == other.describe()
 
@@ -168,7 +171,7 @@ def described(content: Any, base: type[Any], what: str) -> Any:
     A class of the user's must be importable here, and its formulas must be those of the run.
     """
     try:
-        kind, values = content["kind"], content["values"]
+        kind, values = content["kind"], dict(content.get("values", {}))
         module, _, name = kind.partition(":")
     except (TypeError, KeyError, AttributeError):
         raise InputError(f"{what} cannot be read: {shown(content)}") from None
@@ -184,7 +187,7 @@ def described(content: Any, base: type[Any], what: str) -> Any:
         ) from None
     if not isinstance(made, base):
         raise InputError(f"{kind} is no {what} of cellcrawl")
-    if made.describe() != dict(content):
+    if "formulas" in content and made.describe()["formulas"] != content["formulas"]:
         raise InputError(
             f"the {what} {name} in {module} is not that of this run: its formulas have changed"
         )

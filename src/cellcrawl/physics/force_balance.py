@@ -1,7 +1,8 @@
 """The force on the bonds from the force balance, ``balance(phi) = 0`` for ``phi >= 0``.
 
-For the paper's bonds ``phi = log r`` (equation 8). Its balance rises and is convex for ``phi >= 0``,
-so a pull of 0 or more has exactly one root; below there is none, and the model has left its range.
+For the paper's bonds ``phi = log r`` (equation 8). Their balance rises and is convex for
+``phi >= 0``, so a pull of 0 or more has exactly one root; below there is none, and the model has
+left its range.
 With other bonds the balance may fall somewhere: a root where it does is none to stay at, and counts
 as no root.
 """
@@ -26,7 +27,8 @@ def halley_step(
 ) -> float:
     """Step in ``phi`` towards the root of the balance; the error is cubed."""
     g, slope, bend = balance(laws, phi, r, n, sigma, kappa, edge, i)
-    return -2.0 * g * slope / (2.0 * slope * slope - g * bend)
+    step: float = -2.0 * g * slope / (2.0 * slope * slope - g * bend)
+    return step
 
 
 @kernel

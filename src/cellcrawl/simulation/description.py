@@ -10,7 +10,8 @@ from typing import Any
 
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError, nearest_name
-from cellcrawl.laws.law import PAPER, Law
+from cellcrawl.laws import as_law
+from cellcrawl.laws.law import PAPER
 from cellcrawl.laws.rest import CellAtRest, rest_state
 from cellcrawl.parameters import CONSTANT, DESCRIPTIONS, Conditions, Parameters, Schedule
 from cellcrawl.simulation.dataset import SCHEMA_VERSION, package_version
@@ -18,7 +19,7 @@ from cellcrawl.simulation.events import crossing_at
 from cellcrawl.simulation.following import check_records
 from cellcrawl.solvers import SOLVERS, Solver
 from cellcrawl.starts import Eigenmode, FromOutline, PerturbedCircle, RandomPerturbation, Start
-from cellcrawl.surroundings.base import Surroundings
+from cellcrawl.surroundings import as_surroundings
 from cellcrawl.validation import one_of, real_number, shown, table
 
 DEFAULT_SOLVER = "adaptive"
@@ -34,7 +35,7 @@ class RunDescription:
 
     Parameters
     ----------
-    parameters, t_end, start, save_every, solver, nodes, schedule
+    parameters, t_end, start, save_every, solver, nodes, schedule, laws, surroundings
         As in `simulate`; None stands for what is usual.
     options : mapping
         The solver's own options.
@@ -53,16 +54,20 @@ class RunDescription:
     solver: str = DEFAULT_SOLVER
     nodes: int | None = None
     schedule: Schedule = CONSTANT
-    laws: Law = PAPER
-    surroundings: Surroundings | None = None
+    laws: Any = PAPER
+    surroundings: Any = None
     options: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         scheme = solver_named(self.solver)
-        checked = {
+        checked: dict[str, Any] = {
             "t_end": real_number("t_end", self.t_end, 0.0, 1e9),
             "save_every": real_number("save_every", self.save_every, 0.0, 1e9, open_low=True),
             "nodes": scheme.checked_nodes(self.nodes),
+        }
+        checked |= {
+            "laws": as_law(self.laws),
+            "surroundings": as_surroundings(self.surroundings),
         }
         for name, value in checked.items():
             object.__setattr__(self, name, value)

@@ -12,7 +12,7 @@ from cellcrawl.arguments import checked
 from cellcrawl.data import FIELDS, SCHEMA_VERSION, decode_attribute
 from cellcrawl.errors import CellcrawlError, InputError, StorageError
 from cellcrawl.laws import as_law
-from cellcrawl.laws.law import PAPER, Law, described
+from cellcrawl.laws.law import PAPER
 from cellcrawl.parameters import CONSTANT, Conditions, Parameters, Schedule
 from cellcrawl.simulation.description import DEFAULT_SOLVER, RunDescription, solver_named
 from cellcrawl.simulation.events import RESUMABLE
@@ -23,7 +23,7 @@ from cellcrawl.simulation.storage import RunStore
 from cellcrawl.simulation.tension_law import KEY, TensionLaw
 from cellcrawl.solvers import Solver
 from cellcrawl.starts import RandomPerturbation, Start
-from cellcrawl.surroundings import Surrounding, Surroundings, as_surroundings
+from cellcrawl.surroundings import as_surroundings
 from cellcrawl.validation import real_number
 
 _SAME = 1e-9  # a restored state gives its last record to rounding
@@ -111,8 +111,8 @@ def simulate(
         solver=solver,
         nodes=nodes,
         schedule=CONSTANT if schedule is None else schedule,
-        laws=PAPER if laws is None else as_law(laws),
-        surroundings=as_surroundings(surroundings),
+        laws=PAPER if laws is None else laws,
+        surroundings=surroundings,
         options=options,
     )
     store = RunStore(output) if output is not None else None
@@ -215,8 +215,8 @@ def _resume(store: RunStore, until: float, progress: bool) -> xr.Dataset:
     conditions = Conditions(
         Parameters.from_dict(identity["parameters"]),
         Schedule(identity["schedule"]),
-        described(identity["laws"], Law, "law set") if "laws" in identity else PAPER,
-        _surroundings(identity.get("surroundings", [])),
+        as_law(identity.get("laws", PAPER)),
+        as_surroundings(identity.get("surroundings")),
     )
     engine, law = _restored(checkpoint, conditions, identity, last, store.path)
     store.check_records()
@@ -224,11 +224,6 @@ def _resume(store: RunStore, until: float, progress: bool) -> xr.Dataset:
     recorder = StoreRecorder(store, records)
     every = float(identity["save_every"])
     return Follower(engine, law, recorder, identity, every, bar, records, spent).follow(until)
-
-
-def _surroundings(content: Any) -> Surroundings | None:
-    """Return the surroundings that a saved run names."""
-    return as_surroundings([described(part, Surrounding, "surrounding") for part in content])
 
 
 def _restored(

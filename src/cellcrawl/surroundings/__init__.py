@@ -9,17 +9,31 @@ earlier have made of the parameters::
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
 
 from cellcrawl.errors import InputError
+from cellcrawl.laws.law import described
 from cellcrawl.surroundings.base import Place, Surrounding, Surroundings
 from cellcrawl.surroundings.fields import ElectricField, Gradient, UniformForce
 from cellcrawl.surroundings.patterns import Island, Pattern, Stripes
 from cellcrawl.surroundings.walls import Channel, Walls
-from cellcrawl.validation import shown
+from cellcrawl.validation import one_of, shown
+
+SHIPPED: Final[dict[str, type[Any]]] = {
+    "stripes": Stripes,
+    "island": Island,
+    "pattern": Pattern,
+    "gradient": Gradient,
+    "force": UniformForce,
+    "electric-field": ElectricField,
+    "channel": Channel,
+    "walls": Walls,
+}
+"""Surroundings by the names that tables of TOML files take."""
 
 __all__ = [
+    "SHIPPED",
     "Channel",
     "ElectricField",
     "Gradient",
@@ -45,8 +59,21 @@ def as_surroundings(given: Any) -> Surroundings | None:
     """
     if given is None or isinstance(given, Surroundings):
         return given if given is None or given.parts else None
-    if isinstance(given, Surrounding):
-        return Surroundings([given])
-    if isinstance(given, Sequence) and not isinstance(given, str):
-        return Surroundings(given) if len(given) else None
+    if isinstance(given, (Surrounding, Mapping, str)):
+        given = [given]
+    if isinstance(given, Sequence):
+        return Surroundings([_part(part) for part in given]) if len(given) else None
     raise InputError(f"surroundings must be of cellcrawl.surroundings, not {shown(given)}")
+
+
+def _part(given: Any) -> Any:
+    if isinstance(given, str):
+        one_of("surroundings", given, SHIPPED)
+        return SHIPPED[given]()
+    if isinstance(given, Mapping):
+        kind = str(given.get("kind", ""))
+        if kind in SHIPPED:
+            values = {name: value for name, value in given.items() if name != "kind"}
+            return SHIPPED[kind](**values)
+        return described(given, Surrounding, "surrounding")
+    return given

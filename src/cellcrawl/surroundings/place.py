@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -11,14 +11,18 @@ from cellcrawl._compile import kernel
 from cellcrawl.laws.functions import surround
 from cellcrawl.surroundings.base import CompiledSurroundings
 
-# what kernels get of surroundings: compiled, their numbers, room for the parameters in place
-COMPILED, DATA, LOCAL = range(3)
-Around = tuple[CompiledSurroundings, np.ndarray, np.ndarray]
+
+class Around(NamedTuple):
+    """Surroundings at work on an edge."""
+
+    compiled: CompiledSurroundings
+    data: np.ndarray
+    local: np.ndarray
 
 
 def around(compiled: CompiledSurroundings | None, rows: int, nodes: int) -> Around | None:
     """Return what kernels need of surroundings on ``nodes`` nodes, None if there are none."""
-    return None if compiled is None else (compiled, compiled.data, np.zeros((rows, nodes)))
+    return None if compiled is None else Around(compiled, compiled.data, np.zeros((rows, nodes)))
 
 
 @kernel
@@ -35,14 +39,12 @@ def surround_edge(
 
     The tangent may have any length; arrays have shape (nodes,).
     """
-    local = around[LOCAL]
+    local = around.local
     local[:] = edge
     for i in range(x.size):
         per_length = 1.0 / math.hypot(tangent_x[i], tangent_y[i])
         normal_x, normal_y = tangent_y[i] * per_length, -tangent_x[i] * per_length
-        surround(
-            around[COMPILED], around[DATA], time, x[i], y[i], normal_x, normal_y, edge, local, i
-        )
+        surround(around.compiled, around.data, time, x[i], y[i], normal_x, normal_y, edge, local, i)
 
 
 def placed(
@@ -58,4 +60,4 @@ def placed(
     if room is None:
         return edge
     surround_edge(room, time, x, y, *tangent, edge)
-    return room[LOCAL]
+    return room.local

@@ -276,8 +276,8 @@ def run(
     """Step until ``target`` is reached or something is for the caller to do.
 
     ``allowed`` is what the grid may miss (see `resolution`) while the nodes stay in their range.
-    ``edge`` holds the law's parameters and G at the midpoints, shape (rows, nodes), at the end of the next
-    step; while they are ``ramping``, only one step is tried (`RETRY`).
+    ``edge`` holds the law's parameters and G at the midpoints, shape (rows, nodes), at the end of
+    the next step; while they are ``ramping``, only one step is tried (`RETRY`).
     """
     tried = 0
     nodes = y.size

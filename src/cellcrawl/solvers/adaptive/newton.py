@@ -27,7 +27,6 @@ from cellcrawl.solvers.adaptive.mesh import FINE, FINE_NODE
 from cellcrawl.solvers.adaptive.rates import RATE
 from cellcrawl.solvers.adaptive.staggered import HALO, difference_ahead, dot, fill_halo
 from cellcrawl.solvers.cyclic import FACTOR_ROWS, factor_cyclic_tridiagonal, solve_factored
-from cellcrawl.surroundings.place import LOCAL
 
 # rows of a matrix: how U answers to n and to sigma, how n answers to sigma within a step, g kappa,
 # a few numbers, g times the first
@@ -77,7 +76,7 @@ def factor(
     scalars = state[3 * span :]
     local = edge
     if around is not None:
-        local = around[LOCAL]
+        local = around.local
     fine, fine_node = mesh[FINE], mesh[FINE_NODE]
     per_spacing = nodes / scalars[LENGTH]
     winding = 2.0 * math.pi / scalars[LENGTH]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -20,11 +20,17 @@ from cellcrawl.solvers.adaptive.projection import (
 )
 from cellcrawl.solvers.adaptive.staggered import HALO, mean_ahead
 from cellcrawl.surroundings.base import CompiledSurroundings
-from cellcrawl.surroundings.place import COMPILED, DATA, LOCAL
 
-ROOM = 3  # after those: room to work in
-Around = tuple[CompiledSurroundings, np.ndarray, np.ndarray, np.ndarray]
 _HALO: Final = np.uint64(HALO)
+
+
+class Around(NamedTuple):
+    """Surroundings at work on the midpoints."""
+
+    compiled: CompiledSurroundings
+    data: np.ndarray
+    local: np.ndarray
+    room: np.ndarray
 
 
 def around(compiled: CompiledSurroundings | None, rows: int, nodes: int) -> Around | None:
@@ -32,7 +38,7 @@ def around(compiled: CompiledSurroundings | None, rows: int, nodes: int) -> Arou
     if compiled is None:
         return None
     room = np.zeros((TRACE_ROWS, nodes + 2 * HALO))
-    return compiled, compiled.data, np.zeros((rows, nodes)), room
+    return Around(compiled, compiled.data, np.zeros((rows, nodes)), room)
 
 
 @kernel
@@ -41,7 +47,7 @@ def surround_midpoints(
 ) -> None:
     """Fill the parameters in place from those far from all, ``edge``. Halos are filled."""
     nodes = edge.shape[1]
-    local, room = around[LOCAL], around[ROOM]
+    local, room = around.local, around.room
     tangent(w, nodes, room)
     trace(g, scalars[LENGTH], nodes, room)
     for row in range(edge.shape[0]):
@@ -52,4 +58,4 @@ def surround_midpoints(
         x = mean_ahead(room[X], j) + scalars[ORIGIN_X]
         y = mean_ahead(room[Y], j) + scalars[ORIGIN_Y]
         cosine, sine = room[COSINE, j], room[SINE, j]
-        surround(around[COMPILED], around[DATA], time, x, y, sine, -cosine, edge, local, i)
+        surround(around.compiled, around.data, time, x, y, sine, -cosine, edge, local, i)

@@ -45,7 +45,6 @@ from cellcrawl.solvers.adaptive.staggered import (
     running_sum,
     total,
 )
-from cellcrawl.surroundings.place import LOCAL
 
 WORK_ROWS: Final = 6
 RATE: Final = 4  # row of `work` that keeps r beside the last y, from stage to stage
@@ -138,7 +137,7 @@ def rates(
     fill_halo(n, nodes)
     local = edge
     if around is not None:
-        local = around[LOCAL]
+        local = around.local
         if length > 0.0:
             surround_midpoints(around, time, w, g, scalars, edge)
     if not (

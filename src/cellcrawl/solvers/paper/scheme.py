@@ -21,7 +21,7 @@ from cellcrawl.solvers.fixed_steps import ON_GRID, steps_towards
 from cellcrawl.solvers.paper import step as paper_step
 from cellcrawl.solvers.paper import tangent_angle
 from cellcrawl.starts.base import CellState
-from cellcrawl.surroundings.place import LOCAL, around, placed
+from cellcrawl.surroundings.place import around, placed
 from cellcrawl.validation import real_number, whole_number
 
 _KEPT = 1e-4  # both are kept to rounding at the steps; between two they are interpolated
@@ -201,7 +201,7 @@ class PaperSolver(Solver):
         rate = self._conditions.tension_rate(self.time)
         theta, n, y = self._fields
         if self._around is not None:
-            self._around[LOCAL][:] = self._placed(self.time, self._fields, self._scalars, edge)
+            self._around.local[:] = self._placed(self.time, self._fields, self._scalars, edge)
         for part in (steps - 1, 1):
             if part == 0:
                 continue

@@ -1,9 +1,9 @@
 """One time step of the paper's scheme, and many.
 
-State: tangent angle ``theta``, bound fraction ``n`` and ``y`` (the force on a bond) at the nodes, and the scalars
-length, tension, position of node 0 and area. The area is that of the shape, so the Euler step of
-``sigma_t = G A_t`` keeps ``sigma - G A`` to rounding. Every step ends with the outline closed
-again: angle and length advance apart, and nothing in their equations takes a gap away.
+State: tangent angle ``theta``, bound fraction ``n`` and ``y``, the force on a bond, at the nodes,
+and the scalars length, tension, position of node 0 and area. The area is that of the shape, so the
+Euler step of ``sigma_t = G A_t`` keeps ``sigma - G A`` to rounding. Every step ends with the outline
+closed again: angle and length advance apart, and nothing in their equations takes a gap away.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from cellcrawl.solvers.paper.tangent_angle import (
     points,
     tangential_velocity,
 )
-from cellcrawl.surroundings.place import LOCAL, surround_edge
+from cellcrawl.surroundings.place import surround_edge
 
 LENGTH, TENSION, ORIGIN_X, ORIGIN_Y, AREA, CLOSURE = range(6)  # rows of `scalars`
 STEPPED = 0
@@ -109,7 +109,7 @@ def advance(
     new = scalars.copy()
     local = edge
     if around is not None:
-        local = around[LOCAL]
+        local = around.local
     for step in range(steps):
         length = scalars[LENGTH]
         curvature(theta, length, kappa)

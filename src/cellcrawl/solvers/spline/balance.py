@@ -1,7 +1,7 @@
 """Velocities from the force balance, and the tension in step with the off-rate it causes.
 
-Kernels use the paper's letters: ``n`` bound fraction, ``y`` force on a bond, ``sigma`` tension. ``edge``
-holds the law's parameters, shape (rows, markers).
+Kernels use the paper's letters: ``n`` bound fraction, ``y`` force on a bond, ``sigma`` tension.
+``edge`` holds the law's parameters, shape (rows, markers).
 """
 
 from __future__ import annotations

@@ -30,7 +30,7 @@ from cellcrawl.solvers.spline.outline import (
 from cellcrawl.solvers.spline.periodic import ZIGZAG
 from cellcrawl.solvers.spline.remeshing import SPREAD_ROWS, remesh
 from cellcrawl.solvers.spline.runge_kutta import EXPLICIT_LIMIT, between_ends, step
-from cellcrawl.surroundings.place import LOCAL, surround_edge
+from cellcrawl.surroundings.place import surround_edge
 
 # `scalars`: the tangent's angle at the first marker, continuous; the area the tension goes with
 TENSION, ANGLE, AREA = range(3)
@@ -100,7 +100,7 @@ def advance(
             if around is not None:
                 now = time + taken * dt
                 surround_edge(around, now, fields[X], fields[Y], shape[XU], shape[YU], edge)
-                local = around[LOCAL]
+                local = around.local
             code, marker = solve_balance(laws, fields, scalars[TENSION], shape, local)
             if code != BALANCED:
                 copy(before_fields, fields)
@@ -114,7 +114,7 @@ def advance(
         if around is not None:
             now = time + taken * dt
             surround_edge(around, now, fields[X], fields[Y], shape[XU], shape[YU], edge)
-            local = around[LOCAL]
+            local = around.local
         rate = fastest_explicit_rate(laws, fields, scalars[TENSION], shape, local, ZIGZAG)
         if not rate * dt < EXPLICIT_LIMIT * LARGEST_PARTS:
             return TOO_STIFF, marker, taken

@@ -18,7 +18,7 @@ from cellcrawl._compile import kernel
 from cellcrawl.solvers.spline.balance import BALANCED, rates, solve_balance, solve_tension
 from cellcrawl.solvers.spline.linkers import DIFFUSIVITY, second_derivative_after
 from cellcrawl.solvers.spline.outline import LOG_R, XU, YU, N, X, Y, copy, enclose, measure
-from cellcrawl.surroundings.place import LOCAL, surround_edge
+from cellcrawl.surroundings.place import surround_edge
 
 STAGES = 4
 EXPLICIT_LIMIT = 2.5  # step times decay rate; the explicit part alone is stable up to 3.66
@@ -128,7 +128,7 @@ def step(
             surround_edge(
                 around, time + _TIMES[i] * dt, stage[X], stage[Y], shape[XU], shape[YU], edge
             )
-            local = around[LOCAL]
+            local = around.local
         second_derivative_after(stage, local, implicit, shape, own[SPREADING], spare)
         for node in range(stage.shape[1]):
             own[SPREADING, node] *= local[DIFFUSIVITY, node]
@@ -159,7 +159,7 @@ def step(
     local = edge
     if around is not None:
         surround_edge(around, time + dt, fields[X], fields[Y], shape[XU], shape[YU], edge)
-        local = around[LOCAL]
+        local = around.local
     code, marker = solve_balance(laws, fields, tension, shape, local)
     return code, marker, tension, area
 
