@@ -337,18 +337,18 @@ def _made_derivative(
     a: Expression = operands[0]
     da: Expression = slopes[0]
     if operation == "+":
-        return da + slopes[1]
+        return _sum(da, slopes[1])
     if operation == "-":
-        return da - slopes[1]
+        return _difference(da, slopes[1])
     if operation == "*":
-        return da * operands[1] + a * slopes[1]
+        return _sum(_product(da, operands[1]), _product(a, slopes[1]))
     if operation == "/":
-        return (da - node * slopes[1]) / operands[1]
+        return _quotient(da - node * slopes[1], operands[1])
     if operation == "**":
         b: Expression = operands[1]
         db = slopes[1]
-        moving: Expression = b * a ** (b - 1.0) * da
-        return moving + node * log(a) * db if _value(db) != 0.0 else moving
+        moving = b * a ** (b - 1.0) * da
+        return moving if _value(db) == 0.0 else _sum(moving, node * log(a) * db)
     outer: Expression = _OUTER[operation](a, node)
     return outer * da
 

@@ -51,7 +51,7 @@ class Compiled:
 
 @unbox(LawType)  # type: ignore[no-untyped-call, untyped-decorator]
 def _unboxed(kind: LawType, value: Any, context: Any) -> NativeValue:
-    return NativeValue(context.context.get_dummy_value())
+    return NativeValue(context.context.get_dummy_value())  # type: ignore[no-untyped-call]
 
 
 @lower_constant(LawType)  # type: ignore[no-untyped-call, untyped-decorator]

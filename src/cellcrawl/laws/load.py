@@ -16,7 +16,7 @@ class PolymerizationUnderLoad(Law):
     """
 
     source: ClassVar[str] = "Keren et al., Nature 453, 475 (2008), for the force-velocity relation"
-    stall = Parameter(1e12, 1.0, 1e12, "load on a unit length at which polymerisation stops")
+    stall = Parameter(1e300, 1.0, 1e300, "load on a unit length at which polymerisation stops")
     steepness = Parameter(1.0, 0.1, 1000.0, "exponent of the force-velocity relation")
 
     def polymerization(self, sigma: Any, kappa: Any, p: Any) -> Any:

@@ -58,7 +58,7 @@ def rest_state(parameters: Parameters, laws: Law = PAPER) -> RestState:
     InputError
         If there is none.
     """
-    if type(laws).__mro__[1] is Law and not laws.parameters:
+    if laws.compiled is PAPER.compiled:
         p = parameters
         return RestState(float(np.log(p.r_p)), p.r_p, p.n_bar, p.sigma_bar)
     found = rest_states(parameters, laws)

@@ -1,9 +1,10 @@
 """One time step of the paper's scheme, and many.
 
 State: tangent angle ``theta``, bound fraction ``n`` and ``y``, the force on a bond, at the nodes,
-and the scalars length, tension, position of node 0 and area. The area is that of the shape, so the
-Euler step of ``sigma_t = G A_t`` keeps ``sigma - G A`` to rounding. Every step ends with the outline
-closed again: angle and length advance apart, and nothing in their equations takes a gap away.
+and the scalars length, tension, position of node 0 and area. The area is that of the shape, so that
+the Euler step of ``sigma_t = G A_t`` keeps ``sigma - G A`` to rounding. Every step ends with the
+outline closed again: angle and length advance apart, and nothing in their equations takes a gap
+away.
 """
 
 from __future__ import annotations

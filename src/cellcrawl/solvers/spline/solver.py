@@ -229,7 +229,7 @@ class SplineSolver(Solver):
         first = frames.State(self._before_time, self._before_fields, tension, angle)
         conditions, nodes = self._conditions, self._nodes
         first_rates = frames.rates_of_change(
-            conditions.laws,
+            self._world,
             first,
             conditions.edge(first.time, nodes),
             conditions.tension_rate(first.time),
