@@ -21,6 +21,7 @@ import importlib
 from collections.abc import Mapping
 from typing import Any, Final
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError, nearest_name
 from cellcrawl.laws.catch_slip import CatchSlip
 from cellcrawl.laws.check import check
@@ -68,6 +69,7 @@ __all__ = [
 ]
 
 
+@checked
 def as_law(given: Any) -> Law:
     """Return a law set from itself, its class, a name, ``module:Class`` or what describes it.
 

@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 
 _FUNCTIONS: Final[dict[str, Any]] = {
@@ -116,36 +117,43 @@ def number(value: float) -> Expression:
     return Expression("number", float(value))
 
 
+@checked
 def exp(x: Any) -> Any:
     """Exponential of a number, an array or an expression."""
     return _function("exp", x)
 
 
+@checked
 def log(x: Any) -> Any:
     """Natural logarithm of a number, an array or an expression."""
     return _function("log", x)
 
 
+@checked
 def sqrt(x: Any) -> Any:
     """Square root of a number, an array or an expression."""
     return _function("sqrt", x)
 
 
+@checked
 def sin(x: Any) -> Any:
     """Sine of a number, an array or an expression."""
     return _function("sin", x)
 
 
+@checked
 def cos(x: Any) -> Any:
     """Cosine of a number, an array or an expression."""
     return _function("cos", x)
 
 
+@checked
 def tanh(x: Any) -> Any:
     """Hyperbolic tangent of a number, an array or an expression."""
     return _function("tanh", x)
 
 
+@checked
 def where(condition: Any, if_true: Any, if_false: Any) -> Any:
     """Choose between two values, node by node, by a comparison such as ``x > 0``."""
     if isinstance(condition, Expression):
@@ -157,6 +165,7 @@ def where(condition: Any, if_true: Any, if_false: Any) -> Any:
     return np.where(condition, if_true, if_false)
 
 
+@checked
 def maximum(a: Any, b: Any) -> Any:
     """Return the larger of two values."""
     if isinstance(a, Expression) or isinstance(b, Expression):
@@ -165,6 +174,7 @@ def maximum(a: Any, b: Any) -> Any:
     return np.maximum(a, b)
 
 
+@checked
 def minimum(a: Any, b: Any) -> Any:
     """Return the smaller of two values."""
     if isinstance(a, Expression) or isinstance(b, Expression):

@@ -7,6 +7,7 @@ from typing import Any, Final, Self
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.laws.law import LOCAL, PAPER, Law
 from cellcrawl.parameters.dimensionless import Parameters
@@ -31,6 +32,7 @@ def local_values(parameters: Parameters, laws: Law) -> dict[str, float]:
     return {**of_cell, "pressure": 0.0, **laws.values}
 
 
+@checked
 def rest_states(parameters: Parameters, laws: Law = PAPER) -> list[RestState]:
     """Return all resting circles of radius 1, the least force on a bond first.
 
@@ -44,12 +46,13 @@ def rest_states(parameters: Parameters, laws: Law = PAPER) -> list[RestState]:
         raise InputError(f"{laws.name}: {complaint}")
     p = local_values(parameters, laws)
     with np.errstate(all="ignore"):
-        speed = _at(laws, p, _FORCES)[0]
+        speed = np.broadcast_to(_at(laws, p, _FORCES)[0], _FORCES.shape)
     out, finite = speed > 0.0, np.isfinite(speed)
     changes = np.flatnonzero((out[:-1] != out[1:]) & finite[:-1] & finite[1:])
     return [_between(laws, p, _FORCES[k], _FORCES[k + 1]) for k in changes]
 
 
+@checked
 def rest_state(parameters: Parameters, laws: Law = PAPER) -> RestState:
     """Return the resting circle of radius 1, that of the least force on a bond if there are some.
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.laws.law import described
 from cellcrawl.surroundings.base import Place, Surrounding, Surroundings
@@ -49,6 +50,7 @@ __all__ = [
 ]
 
 
+@checked
 def as_surroundings(given: Any) -> Surroundings | None:
     """Return surroundings from themselves, one `Surrounding`, some, or None.
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from cellcrawl.errors import InputError
+from cellcrawl.arguments import checked
 from cellcrawl.laws.expressions import maximum
 from cellcrawl.laws.law import Parameter
 from cellcrawl.surroundings.base import Place, Surrounding
-from cellcrawl.validation import shown
 
 
 class UniformForce(Surrounding):
@@ -35,6 +34,7 @@ class ElectricField(Surrounding):
         return {"v_p": p.v_p + self.x * at.normal_x + self.y * at.normal_y}
 
 
+@checked
 class Gradient(Surrounding):
     """A local parameter that changes evenly in space, and stays at ``least`` or above.
 
@@ -53,8 +53,6 @@ class Gradient(Surrounding):
     least = Parameter(0.0, -1e12, 1e12, "value below which it does not fall")
 
     def __init__(self, parameter: str = "r_on", **values: float) -> None:
-        if not isinstance(parameter, str):
-            raise InputError(f"parameter must be the name of one, not {shown(parameter)}")
         super().__init__(**values)
         self.parameter = parameter
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.laws.expressions import cos, sin, sqrt, tanh
 from cellcrawl.laws.law import Parameter
@@ -49,6 +50,7 @@ class Island(Surrounding):
         return {"r_on": p.r_on * (self.outside + (1.0 - self.outside) * on)}
 
 
+@checked
 class Pattern(Surrounding):
     """A local parameter from an image, such as the mask of a micropattern.
 
@@ -89,7 +91,7 @@ class Pattern(Surrounding):
         super().__init__(**values)
         self.image = made
         self.pixel = real_number("pixel", pixel, 0.0, 1e6, open_low=True)
-        self.parameter = str(parameter)
+        self.parameter = parameter
 
     def table(self) -> np.ndarray:
         rows, columns = self.image.shape

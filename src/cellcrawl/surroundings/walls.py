@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.laws.expressions import cos, maximum, sin
 from cellcrawl.laws.law import Parameter
@@ -28,6 +29,7 @@ class Channel(Surrounding):
         return {"pressure": p.pressure + self.stiffness * depth}
 
 
+@checked
 class Walls(Surrounding):
     """An obstacle or a room with straight walls.
 
@@ -46,7 +48,7 @@ class Walls(Surrounding):
         if len(made) < 3:
             raise InputError(f"corners has {len(made)} points: a polygon has 3 or more")
         super().__init__(**values)
-        self.corners, self.room = made, bool(room)
+        self.corners, self.room = made, room
 
     def table(self) -> np.ndarray:
         return np.concatenate([[len(self.corners)], self.corners.ravel()])
