@@ -51,6 +51,20 @@ class Track:
         """Time from the first record to the last."""
         return float(self.t[-1] - self.t[0])
 
+    def at(self, t: np.ndarray, x: np.ndarray, y: np.ndarray) -> Track:
+        """Return the same cell at other times and positions."""
+        return Track(
+            t,
+            x,
+            y,
+            self.length_units,
+            self.time_units,
+            self.id,
+            self.parent,
+            self.y_down,
+            self.source,
+        )
+
     def __len__(self) -> int:
         return int(self.t.size)
 
