@@ -88,11 +88,9 @@ def modes(work: Path) -> None:
     from cellcrawl.bench import confidence
     from cellcrawl.bench.modes import plot
 
-    rows = [confidence.Reliability(**row) for row in recorded("modes").get("confidence", ())]
+    rows = [confidence.Reliability(**row) for row in recorded("confidence")["confidence"]]
     together = [row for row in rows if row.records == "all"]
     apart = [row for row in rows if row.records != "all"]
-    if not rows:
-        together, apart = confidence.measure()
     drawn = {"modes": plot(), "confidence": confidence.plot(together, apart)}
     for name, figure in drawn.items():
         figure.savefig(RESULTS / f"{name}.png", dpi=160)
