@@ -109,7 +109,7 @@ def test_one_turn_is_too_little_to_tell():
     heading = np.where(t < 60.0, 0.0, 1.0)
     found = cc.classify_track(t, np.cumsum(np.cos(heading)), np.cumsum(np.sin(heading)))
     assert found.mode == "other"
-    assert found.confidence < 0.9
+    assert found.confidence < 0.6  # its cell may turn back, on, or anywhere
     assert "too few" in found.doubt
 
 

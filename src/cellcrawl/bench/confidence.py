@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -17,6 +15,7 @@ from cellcrawl.modes.calibrate import LENGTHS, Answers, answers, fit
 from cellcrawl.modes.confidence import FILE
 from cellcrawl.modes.mixture import FEWEST, MOST, mixture
 from cellcrawl.plot.style import INK, PAGE, RIM, TRACK, paper_figure
+from cellcrawl.sweeps.pool import WorkerPool
 
 SEED: Final = 2024
 """Of the tracks that the confidence is fitted to; it is checked on others."""
@@ -54,7 +53,7 @@ class Reliability(NamedTuple):
 
     @property
     def agrees(self) -> bool:
-        """Whether the interval holds a part that differs from the confidence by `WITHIN` at most."""
+        """Whether the interval reaches to within `WITHIN` of the confidence."""
         return self.low - WITHIN <= self.confidence <= self.high + WITHIN
 
 
@@ -74,7 +73,7 @@ def calibrate(tracks: int = _TRACKS, seed: int = SEED, workers: int = 2) -> Path
 
 def _in_parts(do: Callable[[tuple[int, int]], Any], seed: int, tracks: int, workers: int) -> Any:
     parts = [(seed, number) for number in range(-(-tracks // _PART))]
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+    with WorkerPool(workers) as pool:
         return list(pool.map(do, parts))
 
 
@@ -83,9 +82,7 @@ def _answers(part: tuple[int, int]) -> Answers:
     return answers(mixture(_PART, seed * 10_000 + number))
 
 
-def measure(
-    quick: bool = False, workers: int = 2
-) -> tuple[list[Reliability], list[Reliability]]:
+def measure(quick: bool = False, workers: int = 2) -> tuple[list[Reliability], list[Reliability]]:
     """Name tracks of other seeds than those of the fit: by confidence, and by length too."""
     named = _in_parts(_named, _CHECK_SEED, 2 * _PART if quick else _TRACKS, workers)
     said, right, sizes = np.concatenate(named).T
@@ -162,8 +159,6 @@ def plot(together: list[Reliability], apart: list[Reliability]) -> Figure:
 
 def _draw(axes: Any, rows: list[Reliability], colour: str, label: str) -> None:
     shown = [row for row in rows if row.answers >= 10]
-    x, y, low, high = np.array(
-        [(row.confidence, row.right, row.low, row.high) for row in shown]
-    ).T
+    x, y, low, high = np.array([(row.confidence, row.right, row.low, row.high) for row in shown]).T
     ends = np.maximum([y - low, high - y], 0.0)
     axes.errorbar(x, y, ends, color=colour, fmt="o-", markersize=3, linewidth=0.8, label=label)

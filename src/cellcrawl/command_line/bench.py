@@ -33,9 +33,7 @@ _KINDS = (
 @click.command()
 @click.argument("kind", default="work-precision", metavar="[KIND]")
 @click.option("--quick", is_flag=True, help="A part of it, in under two minutes.")
-@click.option(
-    "--calibrate", is_flag=True, help="Of confidence: fit it anew first, and store it."
-)
+@click.option("--calibrate", is_flag=True, help="Of confidence: fit it anew first, and store it.")
 @click.option(
     "--output",
     type=click.Path(path_type=Path, file_okay=False),

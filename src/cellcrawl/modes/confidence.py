@@ -133,7 +133,6 @@ class Stored:
                 raw[weak[taken]] = instead[taken]
         return chosen, raw
 
-
     def settle(self, raw: np.ndarray, evidence: np.ndarray) -> np.ndarray:
         """Return how often answers with these probabilities are right, by the length of track."""
         bands = np.searchsorted(self.lengths, evidence[:, _LENGTH_AT])

@@ -60,9 +60,9 @@ def slopes(rows: np.ndarray, step: float) -> np.ndarray:
     found[:, 0] = (
         (-1.5 / step) * rows[:, 0] + (2.0 / step) * rows[:, 1] + (-0.5 / step) * rows[:, 2]
     )
-    found[:, -1] = (0.5 / step) * rows[:, -3] + (-2.0 / step) * rows[:, -2] + (1.5 / step) * rows[
-        :, -1
-    ]
+    found[:, -1] = (
+        (0.5 / step) * rows[:, -3] + (-2.0 / step) * rows[:, -2] + (1.5 / step) * rows[:, -1]
+    )
     return found
 
 
