@@ -25,6 +25,7 @@ _KINDS = (
     "startup",
     "modes",
     "confidence",
+    "microscope",
     "storage",
     "sweep",
 )
@@ -63,6 +64,7 @@ def bench(
       sweep           scheduling, memory of the driver, workers
       modes           how often the classifier is right
       confidence      whether it is right as often as it says
+      microscope      what comes back of runs and shapes seen in pixels
 
     Compare figures of one run only, and quote ratios: machines differ, and share their cores.
     CVODE takes part if scikit-sundae is installed, SciPy's solvers if SciPy is.
@@ -192,6 +194,15 @@ def _confidence(quick: bool, known: References) -> _Result:
     return _Result(data, confidence.plot(together, apart))
 
 
+def _microscope(quick: bool, known: References) -> _Result:
+    from cellcrawl.bench import microscope
+
+    cells = list(_table(microscope.Seen, microscope.measure_cells(quick)))
+    shapes = list(_table(microscope.Shape, microscope.measure_shapes(quick)))
+    data = {"cells": [r._asdict() for r in cells], "shapes": [r._asdict() for r in shapes]}
+    return _Result(data, None)
+
+
 def _storage(quick: bool, known: References) -> _Result:
     from cellcrawl.bench import storage
 
@@ -209,6 +220,7 @@ def _sweep(quick: bool, known: References) -> _Result:
 _MEASURE = {
     "modes": _modes,
     "confidence": _confidence,
+    "microscope": _microscope,
     "work-precision": _work_precision,
     "targets": _targets,
     "long": _long,

@@ -17,11 +17,12 @@ from cellcrawl.validation import real_array, real_number, whole_number
 
 NODES = 128
 _FINE = 512
-_TOLERANCE = 0.31  # of a side of the polygon: the error of an outline that follows pixels
+_TOLERANCE = 0.26  # of a pixel: the error of an outline that follows pixels
 _ORDER = 3  # of the smoothing spline
 _HALVINGS = 14
 _ROUNDS = 2  # in which bends are found, and the smoothing is fitted to them
 _STRAIGHT = 0.8  # of the mean curvature: straighter parts are smoothed as if they bent so much
+_FEWEST_STRAIGHT, _STRAIGHT_PART = 4, 0.1  # sides along an axis that tell of pixels
 _STAIRCASE = 0.9  # part of the sides that follow the axes where an outline goes round pixels
 _FEWEST_PIXELS, _MOST_PIXELS = 24, 100_000
 
@@ -40,7 +41,7 @@ def edge_series(
         Their times, rising; those of the outlines, or 0, 1, 2, ... unless given.
     tolerance : float, optional
         How far, root mean square, smoothing may move the outline; 0 leaves it as it is. Unless
-        given 0.31 of the median side of the polygon, which is the error of an outline that follows
+        given 0.26 of a pixel (of the median side where there are none): the error of what follows
         pixels.
     nodes : int
         Nodes along the edge.
@@ -131,8 +132,17 @@ def _shapes(outlines: Any) -> tuple[list[np.ndarray], np.ndarray, dict[str, Any]
 
 
 def _side(shape: np.ndarray) -> float:
-    sides = np.hypot(*(np.roll(shape, -1, axis=0) - shape).T)
-    return float(np.median(sides[sides > 0.0]))
+    """Return the size of a pixel for an outline that follows pixels, else that of its sides.
+
+    Sides that run along an axis to the last bit are those of pixels, and the shortest is one long;
+    what an image program drew through the middles of pixels, or between them, has some as well.
+    """
+    sides = np.roll(shape, -1, axis=0) - shape
+    lengths = np.hypot(*sides.T)
+    along = lengths[(lengths > 0.0) & (sides == 0.0).any(axis=1)]
+    if along.size >= max(_FEWEST_STRAIGHT, _STRAIGHT_PART * lengths.size):
+        return float(along.min())
+    return float(np.median(lengths[lengths > 0.0]))
 
 
 def _smoothed(shape: np.ndarray, tolerance: float, nodes: int) -> tuple[np.ndarray, float, float]:
