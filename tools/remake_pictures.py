@@ -97,6 +97,13 @@ def modes(work: Path) -> None:
         copy(RESULTS / f"{name}.png", IMAGES / f"{name}.png")
 
 
+def tracks(work: Path) -> None:
+    """The sheet of the tutorial."""
+    sheet = IMAGES / "trackmate-sheet.png"
+    asked = ("--output", sheet, "--dpi", _DOTS)
+    command("-m", "cellcrawl", "tracks", "examples/cells.xml", *asked)
+
+
 def benchmarks(work: Path) -> None:
     """Work against precision, cost against size and very long runs, from the recorded results."""
     from cellcrawl.bench import scaling, work_precision
@@ -127,6 +134,7 @@ STEPS = (
         "benchmarks", ("benchmarks/results/[isw]*.png", "docs/images/performance/*.png"), benchmarks
     ),
     Step("modes", ("benchmarks/results/[mc]*.png", "docs/images/[mc]*.png"), modes),
+    Step("tracks", ("docs/images/trackmate*.png",), tracks),
     Step("cells", ("docs/images/three-cells.png", "docs/images/gallery/*.png"), cells),
     Step("temperature", ("docs/images/temperature/*.png",), temperature),
     Step("one-dimensional", ("docs/images/one_dimensional/*.png",), one_dimensional),

@@ -106,6 +106,19 @@ def test_observables_of_a_run_are_those_of_its_outlines():
     assert np.isfinite(cc.observables.front_rear_asymmetry(seen, "curvature")).all()
 
 
+def test_outlines_keep_the_units_of_their_file_in_every_observable(tmp_path):
+    run = circling(0.4, radius=3.0)
+    file = cc.observe(run, pixel=0.2).write(tmp_path / "run.tif")
+    given = cc.read_outlines(file, pixel_size="0.65 um", frame_interval="30 s")
+    seen = edges(given)
+    for name in ("circularity", "aspect_ratio", "speed", "heading", "turning_rate"):
+        assert np.isfinite(getattr(cc.observables, name)(seen)).all()
+    assert seen["area"].attrs["units"] == "µm^2"
+    assert cc.observables.speed(seen).attrs["units"] == "µm/s"
+    assert np.isfinite(cc.observables.kymograph(seen, "curvature", origin="material")).all()
+    assert np.isfinite(cc.observables.front_rear_asymmetry(seen, "curvature")).all()
+
+
 def test_mistakes_are_one_line():
     square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     for call, said in (

@@ -15,7 +15,7 @@ import click
 from cellcrawl.command_line.main import complain
 from cellcrawl.command_line.many_tracks import classify_all
 from cellcrawl.command_line.options import cannot_write, say, wants_progress
-from cellcrawl.command_line.track_files import read_tracks_of, reading_options
+from cellcrawl.command_line.track_files import read_tracks_of, reading_options, told_of_drift
 from cellcrawl.errors import InputError
 from cellcrawl.validation import shown
 
@@ -112,8 +112,12 @@ def classify(
             raise InputError(why)
     if named > 1:
         counts = ", ".join(f"{number} {mode}" for mode, number in verdict.counts.items())
-        agreed = f"mixed, most {verdict.majority}" if verdict.mode == "mixed" else verdict.mode
-        say(f"together: {agreed} (confidence {verdict.confidence:.2f}): {counts}")
+        sure = f" (confidence {verdict.confidence:.2f})"
+        agreed = verdict.mode + sure
+        if verdict.mode == "mixed":
+            most = sorted(verdict.counts.values())[-2:]
+            agreed = "mixed" if most[0] == most[1] else f"mixed, most {verdict.majority}{sure}"
+        say(f"together: {agreed}: {counts}")
     for failure in failures:
         complain(f"left out {failure}")
     if output is not None:
@@ -151,12 +155,7 @@ def _rows(
     for line in tracks.lines():
         say(line)
     if len(tracks):
-        drift = cc.observables.shared_drift(tracks)
-        if drift.noticed:
-            say(f"{drift}" + ("" if remove_drift else "; --remove-drift takes it off"))
-        if remove_drift:
-            tracks = cc.observables.without_drift(tracks, drift)
-            say(tracks.source.notes[-1])
+        tracks = told_of_drift(tracks, remove_drift)
     with _progress(len(tracks)) as told:
         for named in classify_all(tracks, cell_radius, told):
             yield _Row(str(file), named.track, named.result, named.reason, tracks.source.y_down)

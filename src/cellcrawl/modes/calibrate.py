@@ -102,7 +102,8 @@ def _settled(raw: np.ndarray, right: np.ndarray) -> list[float]:
     as_said[1] = 1.0
     weights = as_said + _logistic(columns, right, _SETTLING_RIDGE, columns @ as_said)
     found = 1.0 / (1.0 + np.exp(-_bent(_POINTS) @ weights))
-    return np.maximum.accumulate(found).round(_DIGITS).tolist()
+    rising: list[float] = np.maximum.accumulate(found).round(_DIGITS).tolist()
+    return rising
 
 
 def _bent(chance: np.ndarray) -> np.ndarray:

@@ -165,14 +165,16 @@ def _heading(random: np.random.Generator, kind: str, when: np.ndarray, records: 
         case "one turn":  # what its cell did before and after is not seen: it may be of any
             at, lasts = random.uniform(0.15, 0.85), random.uniform(0.005, 0.06)
             way = random.choice([-1.0, 1.0]) * random.uniform(70.0, 180.0) * _DEGREES
-            return 0.5 * way * np.tanh((part - at) / lasts)
+            turned: np.ndarray = 0.5 * way * np.tanh((part - at) / lasts)
+            return turned
         case "one swing":
             first, last = random.uniform(0.1, 0.4), random.uniform(0.6, 0.9)
             lasts = random.uniform(0.005, 0.08)
             way = random.choice([-1.0, 1.0]) * random.uniform(70.0, 180.0) * _DEGREES
             back = random.uniform(0.75, 1.25)
-            there = np.tanh((part - first) / lasts) - back * np.tanh((part - last) / lasts)
-            return 0.5 * way * there
+            there, again = (np.tanh((part - at) / lasts) for at in (first, last))
+            swung: np.ndarray = 0.5 * way * (there - back * again)
+            return swung
         case _:  # switching spin
             changes = np.cumsum(random.uniform(0.05, 0.3, 60))
             way = np.where(np.searchsorted(changes, part) % 2 == 0, 1.0, -1.0)
