@@ -91,11 +91,6 @@ def checked_times(name: str, values: Any) -> np.ndarray:
     return times
 
 
-def is_dimensionless(dataset: xr.Dataset) -> bool:
-    """Whether a run is in the model's units, by what its variables and attributes say."""
-    return "scales" not in dataset.attrs and "model" in systems_of(dataset, ("time", *FIELDS))
-
-
 def _check_variable(dataset: xr.Dataset, name: str) -> None:
     wanted = TIME.dims if name == "time" else FIELDS[name].dims
     if name not in dataset.variables:
