@@ -10,6 +10,10 @@ from collections.abc import Iterable
 class CellcrawlError(Exception):
     """Anything cellcrawl raises on purpose."""
 
+    def __str__(self) -> str:
+        """Return the message as one line: names of files and values may hold line breaks."""
+        return super().__str__().replace("\n", "\\n").replace("\r", "\\r")
+
 
 class InputError(CellcrawlError, ValueError):
     """A value the user gave cannot be used; the message names it and says what is allowed."""
