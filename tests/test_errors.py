@@ -35,3 +35,10 @@ def test_a_message_is_one_line_whatever_a_file_is_called(door):
     with pytest.raises(cc.CellcrawlError, match=r"a\\nb") as error:
         door("a\nb\r")
     assert len(str(error.value).splitlines()) == 1
+
+
+def test_a_long_list_of_names_is_cut():
+    told = nearest_name("?", [f"name{i:03}" for i in range(200)])
+    assert len(told) < 450
+    assert told.startswith("known names: name000, name001")
+    assert int(told.split()[-2]) + told.count("name") - 1 == 200

@@ -73,7 +73,10 @@ def file_path(name: str, value: Any) -> Path:
     """Return ``value`` as a path that a file system can hold, or raise `InputError`."""
     if not isinstance(value, (str, os.PathLike)):
         raise InputError(f"{name} must be a path, not {shown(value)}")
-    text = os.fspath(value)
+    try:
+        text = os.fspath(value)
+    except Exception:  # an object that promises a path and has none
+        raise InputError(f"{name} must be a path, not {shown(value)}") from None
     if not isinstance(text, str):
         raise InputError(f"{name} must be a path of text, not {shown(value)}")
     if not text or "\0" in text:

@@ -120,7 +120,7 @@ def classify_track(
 @checked
 def is_long_enough(dataset: xr.Dataset) -> bool:
     """Whether a run of the model lasts `SHORTEST_RUN` and has the records to show its mode."""
-    times, one = dataset["time"].values, units_of(dataset).one("time")
+    times, one = records_with(dataset)["time"].values, units_of(dataset).one("time")
     long = float(times[-1] - times[0]) >= SHORTEST_RUN * (one if math.isfinite(one) else 0.0)
     return times.size >= FEWEST_RECORDS and long
 
