@@ -275,3 +275,15 @@ def test_named_points_have_the_modes_of_the_paper(point, mode):
     assert cc.modes.combine(map(cc.classify, runs)).majority == mode
     early = [cc.classify(run.sel(time=slice(0.0, 50.0))) for run in runs]
     assert cc.modes.combine(early).majority == mode
+
+
+def test_a_short_run_that_has_not_turned_yet_is_not_sure_to_glide():
+    run = cc.simulate(cc.Parameters(r_on=26, zeta_1=600), 60.0, start=cc.RandomPerturbation(seed=1))
+    assert cc.classify(run).mode == "zigzag"
+    early = cc.classify(run.sel(time=slice(0.0, 8.0)))
+    assert early.mode == "gliding"
+    assert early.confidence <= 0.5
+    assert early.doubt.startswith("it lasts 8 of the 50 in which turns may begin")
+    si = cc.classify(cc.Scales().dataset(run.sel(time=slice(0.0, 8.0))))
+    assert si.confidence <= 0.5
+    assert si.doubt.startswith("it lasts 80 of the 500")

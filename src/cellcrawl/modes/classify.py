@@ -31,7 +31,8 @@ _LATER_STARTS = (0.0, 1 / 9, 2 / 9, 3 / 9)
 _SHORT, _LONG = 24, 60  # records up to which none of these, and only the last, is tried
 _PREFER_EARLY = 0.3  # a start that leaves out the part p must fit better by this times p
 _FEW_TURNS = 3  # a track that has turned less often, and less than once round, may be any mode
-_CUT_SHORT = 0.5  # the confidence that a run which failed can have
+_CUT_SHORT = 0.5  # the confidence that a run which failed, or is too short, can have
+_UNEVENTFUL = ("gliding", "stationary")  # modes of cells that have not turned, or not set off, yet
 _FAILURES = tuple(set(STATUSES) - {"completed", "fragmented", "interrupted", "running"})
 
 
@@ -71,7 +72,7 @@ def classify(dataset: xr.Dataset, *, use_size: bool = True) -> Classification:
     track = as_track(run, at_least=FEWEST_RECORDS)
     radius = math.sqrt(float(np.median(run["area"].values)) / math.pi)
     found = _classify(track, radius if use_size else None)
-    return _ended(found, str(run.attrs.get("status", "completed")), float(track.t[-1]))
+    return _ended(_early(found, run), str(run.attrs.get("status", "completed")), float(track.t[-1]))
 
 
 @checked
@@ -207,6 +208,18 @@ def _ended(found: Classification, status: str, time: float) -> Classification:
     words = f"the run ended {status} at t = {time:.4g}"
     doubt = "; ".join(part for part in (words, found.doubt) if part)
     return replace(found, confidence=min(found.confidence, _CUT_SHORT), doubt=doubt)
+
+
+def _early(found: Classification, run: xr.Dataset) -> Classification:
+    """Return the result with what it is worth where nothing has happened, and still may."""
+    if found.mode not in _UNEVENTFUL or is_long_enough(run):
+        return found
+    lasts = float(run["time"][-1] - run["time"][0])
+    unit = units_of(run).one("time")
+    words = f"it lasts {lasts:.4g} of the {SHORTEST_RUN * unit:g} in which turns may begin"
+    return replace(
+        found, confidence=min(found.confidence, _CUT_SHORT), doubt=_joined(words, found.doubt)
+    )
 
 
 def _score(result: Classification, later: float) -> float:
