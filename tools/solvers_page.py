@@ -73,12 +73,17 @@ def endings() -> str:
     lines = []
     for cell, seed in dict.fromkeys((tuple(r["cell"]), r["seed"]) for r in content["runs"]):
         mine = {
-            r["run"]: r for r in content["runs"] if (tuple(r["cell"]), r["seed"]) == (cell, seed)
+            run["run"]: run
+            for run in content["runs"]
+            if (tuple(run["cell"]), run["seed"]) == (cell, seed)
         }
-        cells = (f"{mine[name]['status']} {mine[name]['end']:.2f}" for name in names)
-        forty = (mine[name]["bends"][1] for name in names)
-        bent = ", ".join("never" if time is None else f"{time:.2f}" for time in forty)
-        lines.append(["({:g}, {:g})".format(*cell), str(seed), *cells, bent])
+        cells = (
+            f"{mine[name]['status'].replace('completed', 'whole at')} {mine[name]['end']:.2f}"
+            for name in names
+        )
+        bent = (mine[name]["bends"][1] for name in names)
+        told = ", ".join("never" if time is None else f"{time:.2f}" for time in bent)
+        lines.append(["({:g}, {:g})".format(*cell), str(seed), *cells, told])
     return table(["cell", "seed", *names, f"curvature -{content['bends'][1]:g} at"], lines)
 
 

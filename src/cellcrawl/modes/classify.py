@@ -63,7 +63,8 @@ def classify(dataset: xr.Dataset, *, use_size: bool = True) -> Classification:
     -----
     The modes are those of a cell left to itself: a schedule that changes parameters on the way
     makes a track with several modes, which is "other". A run of less than about 50 may not have
-    come to its mode. A run that a failure ended (outside the model, or unresolved) is named by what
+    come to its mode: one that has not turned or not set off by then has a confidence of at most
+    0.5. A run that a failure ended (outside the model, or unresolved) is named by what
     there is, says so in ``doubt``, and its confidence is at most 0.5.
     """
     run = records_with(dataset, "centroid_x", "centroid_y", "area")
@@ -212,11 +213,10 @@ def _ended(found: Classification, status: str, time: float) -> Classification:
 
 def _early(found: Classification, run: xr.Dataset) -> Classification:
     """Return the result with what it is worth where nothing has happened, and still may."""
-    if found.mode not in _UNEVENTFUL or is_long_enough(run):
+    end, begins = float(run["time"][-1]), SHORTEST_RUN * units_of(run).one("time")
+    if found.mode not in _UNEVENTFUL or not end < begins:
         return found
-    lasts = float(run["time"][-1] - run["time"][0])
-    unit = units_of(run).one("time")
-    words = f"it lasts {lasts:.4g} of the {SHORTEST_RUN * unit:g} in which turns may begin"
+    words = f"it ends at t = {end:.4g}, and turns may begin up to t = {begins:g}"
     return replace(
         found, confidence=min(found.confidence, _CUT_SHORT), doubt=_joined(words, found.doubt)
     )
