@@ -115,6 +115,12 @@ def test_a_part_of_a_run_is_a_run(door):
     DOORS[door](RUN.assign(mine=("time", np.arange(120))))
 
 
+@pytest.mark.parametrize("name", ["length", "area"])
+def test_differences_are_no_run(name):
+    with pytest.raises(cc.InputError, match=f"'{name}' must be above 0"):
+        records_with(RUN.diff("time"), name)
+
+
 @pytest.mark.parametrize("name", ["time", *FIELDS])
 def test_a_value_that_is_not_finite_is_placed(name):
     run = RUN.assign_coords(time=with_nan("time")["time"]) if name == "time" else with_nan(name)
