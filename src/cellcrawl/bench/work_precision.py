@@ -241,9 +241,10 @@ def plot(rows: list[Row]) -> Figure:
                     linewidth=0.8,
                     label=name,
                 )
-            ax.set_title(f"{case.replace(', D', chr(10) + 'D')}, $t$ = {t_end:g}", loc="left")
+            ax.set_title(f"{case.replace(', D', chr(10) + '$D$')}, $t$ = {t_end:g}", loc="left")
             ax.spines[["top", "right"]].set_visible(False)
-        for ax in grid.flat[len(keys) :]:
+        for number, ax in enumerate(grid.flat[len(keys) :], len(keys)):
+            grid.flat[number - columns].tick_params(labelbottom=True)
             ax.remove()
         size = mpl.rcParams["axes.labelsize"]
         figure.supxlabel(
