@@ -206,7 +206,7 @@ class AdaptiveSolver(Solver):
         if nodes > self._max_nodes:
             raise InputError(
                 f"the start needs more than max_nodes = {self._max_nodes} at rtol = "
-                f"{self._rtol:g}: raise max_nodes or rtol, or use a smoother start"
+                f"{self._rtol:g}: {self._for_more_nodes()}, or use a smoother start"
             )
         differences = np.zeros((DIFFERENCES, layout.size(nodes)))
         differences[0] = layout.from_cell(start, nodes)
@@ -350,6 +350,12 @@ class AdaptiveSolver(Solver):
             "for its tension, which the model does not cover",
         )
 
+    def _for_more_nodes(self) -> str:
+        """Return what would do where the nodes are too few: 4096 cannot be raised."""
+        return "raise " + (
+            "rtol" if self._max_nodes == resolution.NODE_COUNTS[-1] else "max_nodes or rtol"
+        )
+
     def _stuck(self, code: int) -> Breakdown:
         if code == drive.NO_ROOT:
             return self._no_root(self.time)
@@ -358,7 +364,7 @@ class AdaptiveSolver(Solver):
                 "unresolved",
                 self.time,
                 f"the edge at t = {self.time:.6g} needs more than max_nodes = {self._max_nodes} "
-                f"at rtol = {self._rtol:g}: raise max_nodes or rtol",
+                f"at rtol = {self._rtol:g}: {self._for_more_nodes()}",
             )
         return Breakdown(
             "step_too_small",
