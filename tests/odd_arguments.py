@@ -142,6 +142,17 @@ def _calls(folder: Path) -> Iterator[Call]:
     yield call(schedule.before, parameters=p, time=0.5)
     yield call(schedule.next_break, time=0.5)
     yield call(schedule.varies, start=0.0, end=0.5)
+    # laws and surroundings
+    yield call(cc.laws.as_law, given="stiffness")
+    yield call(cc.laws.Stiffness, chi=0.5)
+    yield call(cc.laws.CatchSlip, catch=1.0, catch_force=0.5, slip=1.0, slip_force=1.0)
+    yield call(cc.laws.check, law=cc.laws.Stiffness(), parameters=p)
+    yield call(cc.laws.rest_state, parameters=p, laws=cc.laws.Stiffness(chi=0.5))
+    yield call(cc.surroundings.as_surroundings, given=cc.surroundings.Stripes())
+    yield call(cc.surroundings.Stripes, period=2.0, width=0.5, between=0.0, angle=0.0)
+    yield call(cc.surroundings.Pattern, image=np.ones((3, 3)), pixel=0.5, parameter="r_on", x=0.0)
+    yield call(cc.surroundings.Walls, corners=square, room=True, stiffness=1e4)
+    yield call(cc.surroundings.Gradient, parameter="r_on", x=1.0, least=0.0)
     # starts
     yield call(cc.RandomPerturbation, seed=2, amplitude=1e-4, modes=10)
     yield call(cc.PerturbedCircle, radius={2: (0.1, 0.0)}, bound_fraction={2: (0.1, 0.0)})

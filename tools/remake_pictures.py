@@ -88,15 +88,20 @@ def modes(work: Path) -> None:
     from cellcrawl.bench import confidence
     from cellcrawl.bench.modes import plot
 
-    rows = [confidence.Reliability(**row) for row in recorded("modes").get("confidence", ())]
+    rows = [confidence.Reliability(**row) for row in recorded("confidence")["confidence"]]
     together = [row for row in rows if row.records == "all"]
     apart = [row for row in rows if row.records != "all"]
-    if not rows:
-        together, apart = confidence.measure()
     drawn = {"modes": plot(), "confidence": confidence.plot(together, apart)}
     for name, figure in drawn.items():
         figure.savefig(RESULTS / f"{name}.png", dpi=160)
         copy(RESULTS / f"{name}.png", IMAGES / f"{name}.png")
+
+
+def tracks(work: Path) -> None:
+    """The sheet of the tutorial."""
+    sheet = IMAGES / "trackmate-sheet.png"
+    asked = ("--output", sheet, "--dpi", _DOTS)
+    command("-m", "cellcrawl", "tracks", "examples/cells.xml", *asked)
 
 
 def benchmarks(work: Path) -> None:
@@ -129,6 +134,7 @@ STEPS = (
         "benchmarks", ("benchmarks/results/[isw]*.png", "docs/images/performance/*.png"), benchmarks
     ),
     Step("modes", ("benchmarks/results/[mc]*.png", "docs/images/[mc]*.png"), modes),
+    Step("tracks", ("docs/images/trackmate*.png",), tracks),
     Step("cells", ("docs/images/three-cells.png", "docs/images/gallery/*.png"), cells),
     Step("temperature", ("docs/images/temperature/*.png",), temperature),
     Step("one-dimensional", ("docs/images/one_dimensional/*.png",), one_dimensional),

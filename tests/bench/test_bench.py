@@ -8,12 +8,13 @@ import math
 import numpy as np
 import pytest
 
-from cellcrawl.bench import machine, rivals
+from cellcrawl.bench import machine, microscope, rivals
 from cellcrawl.bench.cases import Case, errors
 from cellcrawl.bench.references import References, computed
 from cellcrawl.bench.uniform_grid import UniformGrid
 from cellcrawl.bench.work_precision import Row, prepare, speed_up
 from cellcrawl.command_line.main import run
+from cellcrawl.parameters.paper_cells import PAPER_MODES
 
 
 def row(solver: str, miss: float, seconds: float) -> Row:
@@ -122,3 +123,13 @@ def test_kinds_of_synthetic_tracks_are_counted():
     for row in rows:
         assert row.right + row.wrong_and_sure <= row.tracks
         assert row.right >= 0.8 * row.tracks
+
+
+@pytest.mark.parametrize("point", [(16, 600), (26, 600)])
+def test_a_cell_seen_through_the_microscope_is_the_cell_of_the_run(point):
+    seen = microscope.see(point)
+    assert seen.mode_seen == seen.mode == PAPER_MODES[point]
+    assert seen.speed_low < seen.speed < seen.speed_high
+    assert seen.circularity_seen == pytest.approx(seen.circularity, abs=0.04)
+    if seen.mode == "zigzag":
+        assert seen.period_seen == pytest.approx(seen.period, rel=0.05)

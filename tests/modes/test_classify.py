@@ -109,7 +109,7 @@ def test_one_turn_is_too_little_to_tell():
     heading = np.where(t < 60.0, 0.0, 1.0)
     found = cc.classify_track(t, np.cumsum(np.cos(heading)), np.cumsum(np.sin(heading)))
     assert found.mode == "other"
-    assert found.confidence < 0.9
+    assert found.confidence < 0.6  # its cell may turn back, on, or anywhere
     assert "too few" in found.doubt
 
 
@@ -241,7 +241,7 @@ def test_a_spin_that_begins_after_turns_to_the_other_side_is_seen():
 @pytest.mark.parametrize("status", ["out_of_range", "unresolved", "not_finite", "step_too_small"])
 def test_a_run_that_a_failure_ended_says_so_and_is_not_sure(status):
     run = straight(records=90, step=1.0)
-    assert cc.classify(run).confidence == 1.0
+    assert cc.classify(run).confidence > 0.99
     found = cc.classify(run.assign_attrs(status=status))
     assert found.mode == "gliding"
     assert found.confidence <= 0.5

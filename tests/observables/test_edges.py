@@ -41,9 +41,9 @@ def true_length(a: float, b: float) -> float:
 
 @pytest.mark.parametrize(
     ("size", "area", "length", "bend"),
-    [(20, 2e-2, 2e-2, 0.2), (40, 1e-2, 1e-2, 0.1), (80, 5e-3, 5e-3, 0.1)],
+    [(20, 2e-2, 2e-2, 0.15), (40, 1e-2, 1e-2, 0.1), (80, 3e-3, 5e-3, 0.06)],
 )
-@pytest.mark.parametrize("aspect", [1.0, 1.5])
+@pytest.mark.parametrize("aspect", [1.0, 1.5, 2.0])
 def test_rasterised_shapes_have_their_area_length_and_curvature(size, area, length, bend, aspect):
     random = np.random.default_rng(size)
     a, b = 0.5 * size * math.sqrt(aspect), 0.5 * size / math.sqrt(aspect)
@@ -103,6 +103,19 @@ def test_observables_of_a_run_are_those_of_its_outlines():
         measure = getattr(cc.observables, name)
         np.testing.assert_allclose(measure(seen)[2:-2], measure(run)[2:-2], rtol=2e-2, atol=2e-2)
     assert cc.observables.kymograph(seen, "curvature").dims == ("time", "arclength")
+    assert np.isfinite(cc.observables.front_rear_asymmetry(seen, "curvature")).all()
+
+
+def test_outlines_keep_the_units_of_their_file_in_every_observable(tmp_path):
+    run = circling(0.4, radius=3.0)
+    file = cc.observe(run, pixel=0.2).write(tmp_path / "run.tif")
+    given = cc.read_outlines(file, pixel_size="0.65 um", frame_interval="30 s")
+    seen = edges(given)
+    for name in ("circularity", "aspect_ratio", "speed", "heading", "turning_rate"):
+        assert np.isfinite(getattr(cc.observables, name)(seen)).all()
+    assert seen["area"].attrs["units"] == "µm^2"
+    assert cc.observables.speed(seen).attrs["units"] == "µm/s"
+    assert np.isfinite(cc.observables.kymograph(seen, "curvature", origin="material")).all()
     assert np.isfinite(cc.observables.front_rear_asymmetry(seen, "curvature")).all()
 
 

@@ -49,7 +49,9 @@ def test_pictures_are_those_of_the_screen():
 def test_a_model_and_data_stand_side_by_side():
     figure = cc.plot.compare_tracks({"model": circling(0.4), "data": some_tracks()})
     labels = [part.get_suptitle() for part in figure.subfigs]
-    assert labels == ["model: 1 tracks", "data: 4 tracks"]
+    assert labels == ["model: 1 track", "data: 4 tracks"]
+    lags = [axes.get_xlabel() for axes in figure.axes if axes.get_xlabel().startswith("lag")]
+    assert lags == [r"lag ($1/k_\mathrm{off}^0$)", "lag (s)"]
     figure.canvas.draw()
 
 

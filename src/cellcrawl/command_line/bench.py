@@ -24,6 +24,8 @@ _KINDS = (
     "scaling",
     "startup",
     "modes",
+    "confidence",
+    "microscope",
     "storage",
     "sweep",
 )
@@ -32,9 +34,7 @@ _KINDS = (
 @click.command()
 @click.argument("kind", default="work-precision", metavar="[KIND]")
 @click.option("--quick", is_flag=True, help="A part of it, in under two minutes.")
-@click.option(
-    "--calibrate", is_flag=True, help="Of modes: fit the confidence anew first, and store it."
-)
+@click.option("--calibrate", is_flag=True, help="Of confidence: fit it anew first, and store it.")
 @click.option(
     "--output",
     type=click.Path(path_type=Path, file_okay=False),
@@ -62,7 +62,9 @@ def bench(
       startup         import, first and second start from the shell
       storage         size of a stored run, time to write and to read it
       sweep           scheduling, memory of the driver, workers
-      modes           how often the classifier is right, and as often as it says
+      modes           how often the classifier is right
+      confidence      whether it is right as often as it says
+      microscope      what comes back of runs and shapes seen in pixels
 
     Compare figures of one run only, and quote ratios: machines differ, and share their cores.
     CVODE takes part if scikit-sundae is installed, SciPy's solvers if SciPy is.
@@ -80,7 +82,7 @@ def bench(
     if output is not None:
         make_folder(output)  # before measuring for minutes
     if calibrate:
-        one_of("KIND with --calibrate", kind, ("modes",))
+        one_of("KIND with --calibrate", kind, ("confidence",))
     known = References(references)
     say(machine.describe(machine.record()))
     if calibrate:
@@ -92,8 +94,6 @@ def bench(
         machine.write(output / f"{kind}.json", result.data)
         if result.figure is not None:
             save_picture(result.figure, output / f"{kind}.png", 160)
-        for name, figure in (result.more or {}).items():
-            save_picture(figure, output / f"{name}.png", 160)
         say(f"results  {output}")
     return 0
 
@@ -101,7 +101,6 @@ def bench(
 class _Result(NamedTuple):
     data: dict[str, Any]
     figure: Any
-    more: dict[str, Any] | None = None
 
 
 def _work_precision(quick: bool, known: References) -> _Result:
@@ -175,18 +174,33 @@ def _startup(quick: bool, known: References) -> _Result:
 
 
 def _modes(quick: bool, known: References) -> _Result:
-    from cellcrawl.bench import confidence, modes
+    from cellcrawl.bench import modes
 
     kinds = list(_table(modes.Kind, modes.measure_kinds(quick)))
     tracks, right = (sum(getattr(row, name) for row in kinds) for name in ("tracks", "right"))
     say(f"{right} of {tracks} synthetic tracks named right ({right / tracks:.2%})")
     points = list(_table(modes.Point, modes.measure_points(quick)))
+    data = {"kinds": [r._asdict() for r in kinds], "points": [r._asdict() for r in points]}
+    return _Result(data, modes.plot())
+
+
+def _confidence(quick: bool, known: References) -> _Result:
+    from cellcrawl.bench import confidence
+
     together, apart = confidence.measure(quick)
     rows = list(_table(confidence.Reliability, [*together, *apart]))
-    say(f"confidence differs from the part that is right by {confidence.largest_gap(rows):.2f}")
-    data = {"kinds": [r._asdict() for r in kinds], "points": [r._asdict() for r in points]}
-    data["confidence"] = [r._asdict() for r in rows]
-    return _Result(data, modes.plot(), {"confidence": confidence.plot(together, apart)})
+    say(confidence.summary(rows))
+    data = {"confidence": [r._asdict() for r in rows]}
+    return _Result(data, confidence.plot(together, apart))
+
+
+def _microscope(quick: bool, known: References) -> _Result:
+    from cellcrawl.bench import microscope
+
+    cells = list(_table(microscope.Seen, microscope.measure_cells(quick)))
+    shapes = list(_table(microscope.Shape, microscope.measure_shapes(quick)))
+    data = {"cells": [r._asdict() for r in cells], "shapes": [r._asdict() for r in shapes]}
+    return _Result(data, None)
 
 
 def _storage(quick: bool, known: References) -> _Result:
@@ -205,6 +219,8 @@ def _sweep(quick: bool, known: References) -> _Result:
 
 _MEASURE = {
     "modes": _modes,
+    "confidence": _confidence,
+    "microscope": _microscope,
     "work-precision": _work_precision,
     "targets": _targets,
     "long": _long,

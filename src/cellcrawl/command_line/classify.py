@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import csv
+import itertools
 import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -14,7 +15,7 @@ import click
 from cellcrawl.command_line.main import complain
 from cellcrawl.command_line.many_tracks import classify_all
 from cellcrawl.command_line.options import cannot_write, say, wants_progress
-from cellcrawl.command_line.track_files import read_tracks_of, reading_options
+from cellcrawl.command_line.track_files import read_tracks_of, reading_options, told_of_drift
 from cellcrawl.errors import InputError
 from cellcrawl.validation import shown
 
@@ -83,59 +84,83 @@ def classify(
 
     if output is not None and output.suffix.lower() != ".csv":
         raise InputError(f"--output {shown(str(output))}: the table is written as .csv")
-    rows: list[_Row] = []
+    shown_rows: list[_Row] = []
     failures: list[str] = []
-    for file in files:
-        try:
-            rows += _rows(file, cell_radius, remove_drift, reading)
-        except InputError as error:
-            if len(files) == 1:
-                raise
-            failures.append(_about(str(file), str(error)))
-            rows.append(_Row(str(file), "", None, str(error)))
-    _print(rows)
-    found = [row.result for row in rows if row.result is not None]
-    if not found:
-        first = next((row for row in rows if row.reason), None)
-        why = _about(first.label, first.reason) if first else "there is nothing to name"
-        raise InputError(why)
-    if len(found) > 1:
-        verdict = combine(found)
-        counts = ", ".join(f"{count} {mode}" for mode, count in verdict.counts.items())
-        agreed = f"mixed, most {verdict.majority}" if verdict.mode == "mixed" else verdict.mode
-        say(f"together: {agreed} (confidence {verdict.confidence:.2f}): {counts}")
+    count = named = 0
+    why = "there is nothing to name"
+
+    def results() -> Iterator[Classification]:
+        """Hand every row to the table and keep what is shown: memory stays flat."""
+        nonlocal count, named, why
+        for row in _rows_of_files(files, cell_radius, remove_drift, reading, failures):
+            if count < _SHOWN:
+                shown_rows.append(row)
+            if count == 0 and row.reason:
+                why = _about(row.label, row.reason)
+            count += 1
+            write(row)
+            if row.result is not None:
+                named += 1
+                yield row.result
+
+    with _table(output) as write:
+        found = results()
+        first = next(found, None)
+        verdict = None if first is None else combine(itertools.chain([first], found))
+        _print(shown_rows, count)
+        if verdict is None:
+            raise InputError(why)
+    if named > 1:
+        counts = ", ".join(f"{number} {mode}" for mode, number in verdict.counts.items())
+        sure = f" (confidence {verdict.confidence:.2f})"
+        agreed = verdict.mode + sure
+        if verdict.mode == "mixed":
+            most = sorted(verdict.counts.values())[-2:]
+            agreed = "mixed" if most[0] == most[1] else f"mixed, most {verdict.majority}{sure}"
+        say(f"together: {agreed}: {counts}")
     for failure in failures:
         complain(f"left out {failure}")
     if output is not None:
-        _write(output, rows)
         say(f"table    {output}")
+
+
+def _rows_of_files(
+    files: tuple[Path, ...],
+    cell_radius: float | None,
+    remove_drift: bool,
+    reading: dict[str, Any],
+    failures: list[str],
+) -> Iterator[_Row]:
+    """Yield the rows of all files; one that cannot be read stops none of the others."""
+    for file in files:
+        try:
+            yield from _rows(file, cell_radius, remove_drift, reading)
+        except InputError as error:
+            failures.append(_about(str(file), str(error)))
+            if len(files) == 1:
+                raise
+            yield _Row(str(file), "", None, str(error))
 
 
 def _rows(
     file: Path, cell_radius: float | None, remove_drift: bool, reading: dict[str, Any]
-) -> list[_Row]:
+) -> Iterator[_Row]:
     import cellcrawl as cc
 
     if file.suffix in _RUNS and not _is_a_graph(file):
         with cc.open_run(file) as dataset, _complaints_name(str(file)):
-            return [_Row(str(file), "", cc.classify(dataset))]
+            yield _Row(str(file), "", cc.classify(dataset))
+        return
     tracks = read_tracks_of(file, **reading)
     for line in tracks.lines():
         say(line)
     if len(tracks):
-        drift = cc.observables.shared_drift(tracks)
-        if drift.noticed:
-            say(f"{drift}" + ("" if remove_drift else "; --remove-drift takes it off"))
-        if remove_drift:
-            tracks = cc.observables.without_drift(tracks, drift)
-            say(tracks.source.notes[-1])
+        tracks = told_of_drift(tracks, remove_drift)
     with _progress(len(tracks)) as told:
-        rows = [
-            _Row(str(file), named.track, named.result, named.reason, tracks.source.y_down)
-            for named in classify_all(tracks, cell_radius, told)
-        ]
-    rows += [_Row(str(file), one.what, None, one.reason) for one in tracks.left_out]
-    return rows
+        for named in classify_all(tracks, cell_radius, told):
+            yield _Row(str(file), named.track, named.result, named.reason, tracks.source.y_down)
+    for one in tracks.left_out:
+        yield _Row(str(file), one.what, None, one.reason)
 
 
 def _is_a_graph(file: Path) -> bool:
@@ -145,8 +170,8 @@ def _is_a_graph(file: Path) -> bool:
     return is_geff(file)
 
 
-def _print(rows: list[_Row]) -> None:
-    shown = rows if len(rows) <= _SHOWN else rows[:_SHOWN]
+def _print(shown: list[_Row], count: int) -> None:
+    """Print the first rows of so many."""
     wide = max(len("file"), *(len(row.label) for row in shown)) if shown else len("file")
     say(f"{'file':{wide}}  mode        sure  turned  swings  period  speed   seen by")
     for row in shown:
@@ -160,8 +185,8 @@ def _print(rows: list[_Row]) -> None:
             f"{_cell(seen.period, '.3g'):>6}  {_cell(seen.speed, '.3g'):6}  "
             f"{row.result.summary(y_down=row.y_down)}"
         )
-    if len(rows) > len(shown):
-        say(f"... and {len(rows) - len(shown)} more: --output TABLE holds them all")
+    if count > len(shown):
+        say(f"... and {count - len(shown)} more: --output TABLE holds them all")
 
 
 @contextlib.contextmanager
@@ -189,22 +214,45 @@ def _about(label: str, reason: str) -> str:
     return reason if label in reason else f"{label}: {reason}"
 
 
-def _write(output: Path, rows: list[_Row]) -> None:
-    named = next(row.result for row in rows if row.result is not None)
-    columns = ["file", "track", *named.as_row(), "reason"]
+@contextlib.contextmanager
+def _table(output: Path | None) -> Iterator[Callable[[_Row], None]]:
+    """Write rows as they come to a table that is there, whole, once all are."""
+    if output is None:
+        yield lambda row: None
+        return
+    from cellcrawl.modes import Classification, Measures
+
+    measures = Classification("", 0.0, {}, Measures(), "").as_row()
     partial = output.with_name(f".{output.name}.part")
-    try:
-        with partial.open("w", encoding="utf-8", newline="") as stream:
-            table = csv.DictWriter(stream, columns)
+    with contextlib.ExitStack() as stack:
+        stack.callback(_remove, partial)
+        with _writing(output):
+            stream = stack.enter_context(partial.open("w", encoding="utf-8", newline=""))
+            table = csv.DictWriter(stream, ["file", "track", *measures, "reason"])
             table.writeheader()
-            for row in rows:
-                seen = {} if row.result is None else row.result.as_row()
+
+        def write(row: _Row) -> None:
+            seen = {} if row.result is None else row.result.as_row()
+            with _writing(output):
                 table.writerow({"file": row.file, "track": row.track, **seen, "reason": row.reason})
-        partial.replace(output)
+
+        yield write
+        with _writing(output):
+            stream.close()
+            partial.replace(output)
+
+
+@contextlib.contextmanager
+def _writing(output: Path) -> Iterator[None]:
+    try:
+        yield
     except OSError as error:
-        with contextlib.suppress(OSError):
-            partial.unlink(missing_ok=True)
         raise cannot_write(output, error) from None
+
+
+def _remove(partial: Path) -> None:
+    with contextlib.suppress(OSError):
+        partial.unlink(missing_ok=True)
 
 
 def _cell(value: float, form: str) -> str:

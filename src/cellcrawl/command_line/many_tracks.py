@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from cellcrawl.microscopy import Tracks
     from cellcrawl.modes import Classification
 
-_FEW: Final = 1000  # tracks below which starting processes costs more than it saves
+_FEW: Final = 4000  # tracks below which starting processes costs more than it saves
 _CHUNK: Final = 250
 
 
@@ -41,7 +41,7 @@ def classify_all(
     told : callable
         Called with the number of tracks done since the last call.
     """
-    chunks = [tracks[first : first + _CHUNK] for first in range(0, len(tracks), _CHUNK)]
+    chunks = (tracks[first : first + _CHUNK] for first in range(0, len(tracks), _CHUNK))
     from cellcrawl.sweeps.executors import default_workers
 
     cores = default_workers()

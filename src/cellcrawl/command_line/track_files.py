@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from cellcrawl.command_line.options import say
+
 if TYPE_CHECKING:
     from cellcrawl.microscopy import Tracks
 
@@ -64,3 +66,22 @@ def read_tracks_of(
         pixel_size=pixel_size,
         image_coordinates=image_coordinates,
     )
+
+
+def told_of_drift(tracks: Tracks, remove: bool) -> Tracks:
+    """Say whether all tracks share motion, and return them without it if asked to."""
+    import cellcrawl as cc
+
+    drift = cc.observables.shared_drift(tracks)
+    if drift.noticed:
+        say(f"{drift}" + ("" if remove else "; --remove-drift takes it off"))
+    if not remove:
+        return tracks
+    tracks = cc.observables.without_drift(tracks, drift)
+    say(tracks.source.notes[-1])
+    if not drift.noticed:
+        say(
+            f"but {drift}: what was taken off is the cells' own, 1/{len(tracks)} of the motion of "
+            "each"
+        )
+    return tracks

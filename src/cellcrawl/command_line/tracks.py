@@ -9,7 +9,7 @@ import click
 
 from cellcrawl.command_line.many_tracks import classify_all
 from cellcrawl.command_line.options import say
-from cellcrawl.command_line.track_files import read_tracks_of, reading_options
+from cellcrawl.command_line.track_files import read_tracks_of, reading_options, told_of_drift
 from cellcrawl.errors import InputError
 
 if TYPE_CHECKING:
@@ -88,12 +88,7 @@ def draw_sheet(
     given = _tracks(file, reading or {})
     for line in given.lines():
         say(line)
-    drift = cc.observables.shared_drift(given)
-    if drift.noticed:
-        say(f"{drift}" + ("" if remove_drift else "; --remove-drift takes it off"))
-    if remove_drift:
-        given = cc.observables.without_drift(given, drift)
-        say(given.source.notes[-1])
+    given = told_of_drift(given, remove_drift)
     results = _named(given, cell_radius)
     if beside is not None:
         other = _tracks(beside, reading or {})
@@ -102,7 +97,8 @@ def draw_sheet(
         known = {file.name: results, beside.name: _named(other, radius)}
         figure = cc.plot.compare_tracks(series, known)
     else:
-        figure = cc.plot.tracks(given, results, title=f"{file.name}: {len(given)} tracks")
+        tracks = "1 track" if len(given) == 1 else f"{len(given)} tracks"
+        figure = cc.plot.tracks(given, results, title=f"{file.name}: {tracks}")
     _save(figure, output or file.with_name(f"{file.stem}-tracks.png"), dpi)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator
 from typing import Any, Final
 
@@ -51,11 +52,12 @@ def records_with(dataset: Any, *names: str, at_least: int = 1) -> xr.Dataset:
         raise InputError(
             f"this run has {records} records in time: at least {wanted_records} needed"
         )
-    checked_times("time", dataset["time"].values)
-    systems_of(dataset, ("time", *names))
+    checked_times("time", dataset.variables["time"].values)
+    if dataset.attrs.get("kind") != "outlines":  # which have the units of their file
+        systems_of(dataset, ("time", *names))
     for name in names:
-        _check_finite(dataset[name].variable, name)
-        if name in _ABOVE_ZERO and (dataset[name].values <= 0.0).any():
+        _check_finite(dataset.variables[name], name)
+        if name in _ABOVE_ZERO and (dataset.variables[name].values <= 0.0).any():
             raise InputError(f"{name!r} must be above 0, as in a run: are these differences?")
     if any(name in EDGE_FIELDS for name in names):
         _check_edge(dataset)
@@ -104,7 +106,7 @@ def _check_variable(dataset: xr.Dataset, name: str) -> None:
                 "(a sweep keeps edges with keep='fields')"
             )
         raise InputError(f"this dataset has no {name!r}: is it a cellcrawl run?")
-    variable = dataset[name].variable
+    variable = dataset.variables[name]
     if variable.dims != wanted:
         raise InputError(
             f"{name!r} has dimensions {variable.dims}, not {wanted}: select single records as a "
@@ -121,8 +123,8 @@ def systems_of(dataset: xr.Dataset, names: tuple[str, ...]) -> set[str]:
         if name not in dataset.variables:
             continue
         model = TIME.units if name == "time" else FIELDS[name].units
-        given = dataset[name].attrs.get("units", "")
-        labels = dict(zip(SYSTEMS, (model, *DIMENSIONAL.get(model, (model, model))), strict=True))
+        given = dataset.variables[name].attrs.get("units", "")
+        labels = _labels(model)
         fitting = {system for system, label in labels.items() if given in (label, "")}
         if not fitting:
             known = ", ".join(repr(label) for label in dict.fromkeys(labels.values()))
@@ -136,6 +138,12 @@ def systems_of(dataset: xr.Dataset, names: tuple[str, ...]) -> set[str]:
             told = told or f"{name!r} is in {given!r}"
         possible &= fitting
     return possible
+
+
+@functools.cache
+def _labels(model: str) -> dict[str, str]:
+    """Return what a unit of the model is called in each system."""
+    return dict(zip(SYSTEMS, (model, *DIMENSIONAL.get(model, (model, model))), strict=True))
 
 
 def _slices(variable: xr.Variable) -> Iterator[tuple[int, np.ndarray]]:

@@ -51,6 +51,20 @@ class Track:
         """Time from the first record to the last."""
         return float(self.t[-1] - self.t[0])
 
+    def at(self, t: np.ndarray, x: np.ndarray, y: np.ndarray) -> Track:
+        """Return the same cell at other times and positions."""
+        return Track(
+            t,
+            x,
+            y,
+            self.length_units,
+            self.time_units,
+            self.id,
+            self.parent,
+            self.y_down,
+            self.source,
+        )
+
     def __len__(self) -> int:
         return int(self.t.size)
 
@@ -112,7 +126,8 @@ class Tracks(Sequence[Track]):
             if not all(hasattr(track, name) for name in ("t", "x", "y")):
                 raise InputError(f"a track has t, x and y, and {shown(track)} has not")
         first = given[0] if given else None
-        source = source or getattr(first, "source", None) or _source_of(first)
+        told = getattr(first, "source", UNTOLD)
+        source = source or (_source_of(first) if told is UNTOLD else told)
         ids = [str(getattr(track, "id", "")) for track in given]
         if len(set(ids)) < len(ids):
             ids = [str(number) for number in range(len(ids))]

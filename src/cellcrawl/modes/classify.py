@@ -17,7 +17,7 @@ from cellcrawl.modes.measures import measure, measure_rest, onset
 from cellcrawl.modes.result import STEADY_SPIN, Classification, Measures
 from cellcrawl.observables.inputs import records_with
 from cellcrawl.observables.smoothing import SmoothTrack, smooth
-from cellcrawl.observables.track import Track, as_track
+from cellcrawl.observables.track import Track, as_track, track_of_checked
 from cellcrawl.simulation.events import STATUSES
 from cellcrawl.simulation.units import units_of
 from cellcrawl.validation import real_number
@@ -67,11 +67,13 @@ def classify(dataset: xr.Dataset, *, use_size: bool = True) -> Classification:
     0.5. A run that a failure ended (outside the model, or unresolved) is named by what
     there is, says so in ``doubt``, and its confidence is at most 0.5.
     """
-    run = records_with(dataset, "centroid_x", "centroid_y", "area")
-    if run.attrs.get("status") == "fragmented":
+    torn = isinstance(dataset, xr.Dataset) and dataset.attrs.get("status") == "fragmented"
+    fewest = 1 if torn else FEWEST_RECORDS
+    run = records_with(dataset, "centroid_x", "centroid_y", "area", at_least=fewest)
+    if torn:
         return _fragmented()
-    track = as_track(run, at_least=FEWEST_RECORDS)
-    radius = math.sqrt(float(np.median(run["area"].values)) / math.pi)
+    track = track_of_checked(run)
+    radius = math.sqrt(float(np.median(run.variables["area"].values)) / math.pi)
     found = _classify(track, radius if use_size else None)
     return _ended(_early(found, run), str(run.attrs.get("status", "completed")), float(track.t[-1]))
 

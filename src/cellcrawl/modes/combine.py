@@ -52,18 +52,19 @@ def combine(results: Iterable[Classification]) -> Verdict:
     InputError
         If there are none.
     """
-    given = list(results)
-    if not given:
-        raise InputError("no runs to combine: give at least one classification")
-    counts = Counter(result.mode for result in given)
-    whole = [result for result in given if result.mode != "fragmented"] or given
+    counts: Counter[str] = Counter()
     sure: dict[str, float] = {}
-    for result in whole:
+    for result in results:  # one by one: there may be a hundred thousand
+        counts[result.mode] += 1
         sure[result.mode] = sure.get(result.mode, 0.0) + result.confidence
+    if not counts:
+        raise InputError("no runs to combine: give at least one classification")
+    if len(sure) > 1:
+        sure.pop("fragmented", None)
     majority = max(sure, key=lambda mode: (counts[mode], sure[mode]))
     return Verdict(
         mode=majority if len(sure) == 1 else "mixed",
         majority=majority,
-        confidence=sure[majority] / len(whole),
+        confidence=sure[majority] / sum(counts[mode] for mode in sure),
         counts={mode: counts[mode] for mode in MODES if counts[mode]},
     )

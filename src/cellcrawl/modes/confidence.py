@@ -2,8 +2,8 @@
 
 Of each answer of the rule, a logistic regression on the evidence says how often it is right, and
 how often the track is "other" instead: fitted to a mixture of known tracks by
-``cellcrawl bench modes --calibrate`` and kept in ``confidence.json``. Each number enters as a
-line with bends, so that what counts can be read off the file.
+``cellcrawl bench confidence --calibrate`` and kept in ``confidence.json``. Each number enters as a
+line with bends, and with each of the others as their product.
 """
 
 from __future__ import annotations
@@ -19,17 +19,7 @@ import numpy as np
 from cellcrawl.modes.evidence import WORDS, Evidence
 
 FILE: Final = "confidence.json"
-_CROSSED: Final = (  # numbers that count differently in short and in long tracks
-    "fit",
-    "memory_score",
-    "rhythm",
-    "heading_error",
-    "disorder",
-    "records_per_swing",
-    "turned",
-)
 _TELLING = 0.5  # of the log-odds: evidence that weighs less is not named
-
 
 TOLD: Final = 0.8
 """Below this confidence the reason is told."""
@@ -55,10 +45,10 @@ class Curve:
         Which number a line belongs to.
     knots : ndarray, shape (column,)
         Where in that range, from 0 to 1, the line starts to rise.
-    weights : ndarray, shape (1 + column + crossed,)
-        Of the constant, of the lines, and of the numbers times that of the records.
+    weights : ndarray, shape (1 + column + pair,)
+        Of the constant, of the lines, and of the products of two numbers.
     usual : ndarray, shape (evidence,)
-        What each number adds to the log-odds of right answers on average.
+        Each number as it usually is where the answer is right.
     """
 
     low: np.ndarray
@@ -69,30 +59,27 @@ class Curve:
     usual: np.ndarray
 
     def columns(self, evidence: np.ndarray) -> np.ndarray:
-        """Return the regressors (track, 1 + column + crossed) of evidence (track, number)."""
+        """Return the regressors (track, 1 + column + pair) of evidence (track, number)."""
         span = np.where(self.high > self.low, self.high - self.low, 1.0)
         scaled = (np.minimum(np.maximum(evidence, self.low), self.high) - self.low) / span
         lines = np.maximum(0.0, scaled[:, self.owners] - self.knots)
-        crossed = scaled[:, _CROSSED_AT] * scaled[:, _LENGTH_AT : _LENGTH_AT + 1]
-        return np.concatenate([np.ones((evidence.shape[0], 1)), lines, crossed], axis=1)
+        pairs = scaled[:, _FIRST] * scaled[:, _SECOND]
+        return np.concatenate([np.ones((evidence.shape[0], 1)), lines, pairs], axis=1)
+
+    def odds(self, evidence: np.ndarray) -> np.ndarray:
+        """Return the log-odds (track,) for evidence (track, number)."""
+        odds: np.ndarray = self.columns(evidence) @ self.weights
+        return odds
 
     def probability(self, evidence: np.ndarray) -> np.ndarray:
         """Return the probability (track,) for evidence (track, number)."""
-        odds: np.ndarray = self.columns(evidence) @ self.weights
-        chance: np.ndarray = 1.0 / (1.0 + np.exp(-np.clip(odds, -30.0, 30.0)))
+        chance: np.ndarray = 1.0 / (1.0 + np.exp(-np.clip(self.odds(evidence), -30.0, 30.0)))
         return chance
-
-    def adds(self, evidence: np.ndarray) -> np.ndarray:
-        """Return what each number adds to the log-odds, (track, number)."""
-        products = self.columns(evidence)[:, 1:] * self.weights[1:]
-        whose = np.concatenate([self.owners, _CROSSED_AT])
-        belongs = (whose[:, None] == np.arange(len(_NAMES))).astype(float)
-        added: np.ndarray = products @ belongs
-        return added
 
 
 _NAMES = list(Evidence._fields)
-_CROSSED_AT = np.array([_NAMES.index(name) for name in _CROSSED])
+_NAMED = [place for place, name in enumerate(_NAMES) if name in WORDS]
+_FIRST, _SECOND = np.triu_indices(len(_NAMES), 1)
 _LENGTH_AT = _NAMES.index("records")
 
 
@@ -101,7 +88,7 @@ def trust(mode: str, evidence: Evidence) -> Trust:
     stored = _stored()
     row = np.array([evidence])
     chosen, raw = stored.decide(np.array([mode]), row)
-    confidence = float(np.interp(raw[0], stored.raw, stored.settled))
+    confidence = float(stored.settle(raw, row)[0])
     against = _against(stored.curves[mode][0], row) if confidence < TOLD else ""
     return Trust(str(chosen[0]), confidence, against)
 
@@ -114,12 +101,16 @@ class Stored:
     ----------
     curves : dict
         For each answer of the rule, how often it is right and how often "other" is.
-    raw, settled : ndarray
-        How often answers were right that the curves gave these probabilities, on tracks that they
-        were not fitted to.
+    lengths : ndarray, shape (band - 1,)
+        Logarithm of the numbers of records at which one band of lengths ends and the next begins.
+    raw : ndarray, shape (point,)
+        Probabilities given by the curves ...
+    settled : ndarray, shape (band, point)
+        ... and how often such answers were right, on tracks that the curves were not fitted to.
     """
 
     curves: dict[str, tuple[Curve, Curve]]
+    lengths: np.ndarray
     raw: np.ndarray
     settled: np.ndarray
 
@@ -142,6 +133,14 @@ class Stored:
                 raw[weak[taken]] = instead[taken]
         return chosen, raw
 
+    def settle(self, raw: np.ndarray, evidence: np.ndarray) -> np.ndarray:
+        """Return how often answers with these probabilities are right, by the length of track."""
+        bands = np.searchsorted(self.lengths, evidence[:, _LENGTH_AT])
+        found = np.zeros(raw.size)
+        for band in set(bands.tolist()):
+            found[bands == band] = np.interp(raw[bands == band], self.raw, self.settled[band])
+        return found
+
 
 def stored_from(kept: dict[str, Any]) -> Stored:
     """Return what a table as in `confidence.json` holds."""
@@ -149,15 +148,16 @@ def stored_from(kept: dict[str, Any]) -> Stored:
         mode: (_curve(pair["right"]), _curve(pair["other"]))
         for mode, pair in kept["answers"].items()
     }
-    return Stored(curves, np.array(kept["raw"]), np.array(kept["settled"]))
+    return Stored(curves, *(np.array(kept[name]) for name in ("lengths", "raw", "settled")))
 
 
 def _against(curve: Curve, row: np.ndarray) -> str:
-    """Name the evidence that lowers the odds most against what is usual."""
-    lost = curve.usual - curve.adds(row)[0]
-    named = [(float(lost[i]), WORDS[name]) for i, name in enumerate(_NAMES) if name in WORDS]
-    most, words = max(named)
-    return words if most > _TELLING else ""
+    """Name the number that would raise the odds most if it were as it usually is."""
+    instead = np.repeat(row, len(_NAMED), axis=0)
+    instead[np.arange(len(_NAMED)), _NAMED] = curve.usual[_NAMED]
+    gained = curve.odds(instead) - curve.odds(row)[0]
+    most = int(np.argmax(gained))
+    return WORDS[_NAMES[_NAMED[most]]] if gained[most] > _TELLING else ""
 
 
 @functools.cache

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from cellcrawl.modes.result import Measures
+from cellcrawl.observables.short_arrays import mean, row_means
 from cellcrawl.observables.smoothing import SmoothTrack
 
 _FASTEST = 0.15  # cycles a record: swings faster than this are hardly seen
@@ -62,7 +64,7 @@ def gather(
 ) -> Evidence:
     """Return what tells how far the answer of the rule can be trusted."""
     size = track.t.size
-    steps = _steps(track)
+    steps = track.steps
     power = float(np.sum(steps**2))
     lags = [_correlation(steps, lag, power) for lag in (1, 2, 3)]
     memory = 0.5 * (lags[1] + lags[2])
@@ -94,17 +96,6 @@ def gather(
     )
 
 
-def _steps(track: SmoothTrack) -> np.ndarray:
-    """Return the steps (2, record - 1) of the records that count, by the clock of the motion."""
-    sound = track.sound
-    even = np.linspace(sound.clock[0], sound.clock[-1], sound.clock.size)
-    places = np.stack(
-        [np.interp(even, sound.clock, values) for values in (sound.track.x, sound.track.y)]
-    )
-    steps: np.ndarray = np.diff(places, axis=1)
-    return steps
-
-
 def _correlation(steps: np.ndarray, lag: int, power: float) -> float:
     """Return the correlation of steps with those ``lag`` later: 1 straight ahead, 0 at random."""
     size = steps.shape[1]
@@ -114,6 +105,11 @@ def _correlation(steps: np.ndarray, lag: int, power: float) -> float:
     return float(product / power * size / (size - lag))
 
 
+@functools.lru_cache(maxsize=64)
+def _window(size: int) -> np.ndarray:
+    return np.hanning(size)
+
+
 def _rhythm(steps: np.ndarray, power: float) -> float:
     """Return how far one fast frequency stands out among the fast ones.
 
@@ -121,11 +117,11 @@ def _rhythm(steps: np.ndarray, power: float) -> float:
     logarithm of their number, which it is near for noise; 0 without fast motion to speak of.
     """
     size = steps.shape[1]
-    around = steps - steps.mean(axis=1, keepdims=True)
-    spectrum = np.sum(np.abs(np.fft.rfft(around * np.hanning(size), axis=1)) ** 2, axis=0)
-    fast = spectrum[int(_FASTEST * size) + 1 :]
-    mean = float(fast.mean()) if fast.size else 0.0
-    if fast.size < 3 or mean * fast.size <= 1e-3 * power * size:
+    around = steps - row_means(steps)
+    amplitudes = np.abs(np.fft.rfft(around * _window(size), axis=1))
+    fast = np.add.reduce(amplitudes * amplitudes)[int(_FASTEST * size) + 1 :]
+    usual = mean(fast) if fast.size else 0.0
+    if fast.size < 3 or usual * fast.size <= 1e-3 * power * size:
         return 0.0
-    stands_out = float(fast.max()) / mean - math.log(fast.size)
+    stands_out = float(fast.max()) / usual - math.log(fast.size)
     return float(min(max(stands_out, 0.0), 20.0))

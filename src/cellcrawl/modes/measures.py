@@ -7,7 +7,13 @@ import math
 import numpy as np
 
 from cellcrawl.modes.result import Measures
-from cellcrawl.observables.noise import median
+from cellcrawl.observables.short_arrays import (
+    mean,
+    median,
+    peak_to_peak,
+    row_means,
+    standard_deviation,
+)
 from cellcrawl.observables.smoothing import SmoothTrack
 from cellcrawl.observables.track import Track
 from cellcrawl.observables.turns import Swings, crossing_times, swings_of
@@ -33,13 +39,13 @@ def measure_rest(track: Track, noise: float) -> Measures:
     Of a short track all records count for the order of its positions.
     """
     after = int(np.searchsorted(track.t, track.t[0] + _FIRST_MOVES * track.duration))
-    places = np.stack([track.x, track.y])
+    places = np.array([track.x, track.y])
     settled = after if track.t.size - after >= _ENOUGH else 0
-    around = places[:, settled:] - places[:, settled:].mean(axis=1, keepdims=True)
+    around = places[:, settled:] - row_means(places[:, settled:])
     whole, extent = _extent(places), _extent(places[:, after:])
     # Positions far from the origin carry their rounding.
     moves = extent > _ROUNDING * float(np.abs(places).max())
-    steps = np.diff(around, axis=1)
+    steps = around[:, 1:] - around[:, :-1]
     return Measures(
         start=float(track.t[0]),
         speed=0.0,
@@ -52,8 +58,8 @@ def measure_rest(track: Track, noise: float) -> Measures:
 
 def _extent(places: np.ndarray) -> float:
     """Return the largest distance of positions (2, record) from their mean, twice."""
-    around = places - places.mean(axis=1, keepdims=True)
-    return 2.0 * float(np.sqrt(np.max(np.sum(around**2, axis=0))))
+    around = places - row_means(places)
+    return 2.0 * math.sqrt(float((around[0] ** 2 + around[1] ** 2).max()))
 
 
 def measure(track: SmoothTrack, first: int) -> Measures:
@@ -64,12 +70,13 @@ def measure(track: SmoothTrack, first: int) -> Measures:
     swings = swings_of(heading, smallest)
     inner = _complete(swings)
     sizes = np.abs(inner.angle)
-    intervals = np.diff(crossing_times(times, heading, inner))
+    crossings = crossing_times(times, heading, inner)
+    intervals = crossings[1:] - crossings[:-1]
     left, right = (_mean(sizes[inner.angle * sign > 0.0]) for sign in (1.0, -1.0))
     turned = float(heading[-1] - heading[0])
     against = np.abs(swings.angle[swings.angle * turned < 0.0])
     wander = _wander(times, heading)
-    path = float(np.sum(np.hypot(np.diff(x), np.diff(y))))
+    path = float(np.add.reduce(np.hypot(x[1:] - x[:-1], y[1:] - y[:-1])))
     net = math.hypot(x[-1] - x[0], y[-1] - y[0])
     return Measures(
         start=float(times[0]),
@@ -103,18 +110,18 @@ def _complete(swings: Swings) -> Swings:
 
 
 def _mean(values: np.ndarray) -> float:
-    return float(values.mean()) if values.size else 0.0
+    return mean(values) if values.size else 0.0
 
 
 def _spread(values: np.ndarray) -> float:
     if values.size < 2:
         return 0.0
-    mean = float(values.mean())
-    return float(values.std(ddof=1)) / mean if mean > 0.0 else math.inf
+    usual = mean(values)
+    return standard_deviation(values) / usual if usual > 0.0 else math.inf
 
 
 def _wander(times: np.ndarray, heading: np.ndarray) -> float:
     """Return the range of the heading around its least-squares line."""
-    when = times - times.mean()
+    when = times - mean(times)
     slope = float(when @ heading) / float(when @ when)
-    return float(np.ptp(heading - slope * when))
+    return peak_to_peak(heading - slope * when)

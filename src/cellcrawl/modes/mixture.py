@@ -30,6 +30,11 @@ SHARES: Final = {
     "walk with pauses": ("other", 0.5),
     "loops": ("other", 0.5),
     "switching spin": ("other", 0.5),
+    "one turn of a circling cell": ("rotational", 0.15),
+    "one turn of a zigzag": ("zigzag", 0.2),
+    "one turn of a walk": ("other", 0.3),
+    "one swing of a zigzag": ("zigzag", 0.25),
+    "one swing of a walk": ("other", 0.25),
     "at rest": ("stationary", 1.0),
     "comes to rest": ("stationary", 0.25),
 }
@@ -119,7 +124,7 @@ def _heading(random: np.random.Generator, kind: str, when: np.ndarray, records: 
     """Return the heading (fine,) against the time on the move, in records."""
     total = max(float(when[-1]), 1.0)
     part = when / total
-    match kind.replace(" with pauses", ""):
+    match kind.replace(" with pauses", "").partition(" of ")[0]:
         case "straight":
             settles = random.uniform(0.001, 0.1)
             return (
@@ -157,6 +162,19 @@ def _heading(random: np.random.Generator, kind: str, when: np.ndarray, records: 
             cycles = _even_in_logarithm(random, 1.75, max(2.0, total / 6.0))
             swing = random.uniform(230.0, 330.0) * _DEGREES
             return 0.5 * swing * np.sin(2.0 * math.pi * (cycles * part + random.random()))
+        case "one turn":  # what its cell did before and after is not seen: it may be of any
+            at, lasts = random.uniform(0.15, 0.85), random.uniform(0.005, 0.06)
+            way = random.choice([-1.0, 1.0]) * random.uniform(70.0, 180.0) * _DEGREES
+            turned: np.ndarray = 0.5 * way * np.tanh((part - at) / lasts)
+            return turned
+        case "one swing":
+            first, last = random.uniform(0.1, 0.4), random.uniform(0.6, 0.9)
+            lasts = random.uniform(0.005, 0.08)
+            way = random.choice([-1.0, 1.0]) * random.uniform(70.0, 180.0) * _DEGREES
+            back = random.uniform(0.75, 1.25)
+            there, again = (np.tanh((part - at) / lasts) for at in (first, last))
+            swung: np.ndarray = 0.5 * way * (there - back * again)
+            return swung
         case _:  # switching spin
             changes = np.cumsum(random.uniform(0.05, 0.3, 60))
             way = np.where(np.searchsorted(changes, part) % 2 == 0, 1.0, -1.0)

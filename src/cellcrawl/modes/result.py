@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any, Final
 
 from cellcrawl.records import EqualWithNaN
@@ -122,7 +122,7 @@ class Classification(EqualWithNaN):
 
     def as_row(self) -> dict[str, Any]:
         """Return mode, confidence and measures as one flat row of a table."""
-        row = {"mode": self.mode, "confidence": self.confidence, **asdict(self.measures)}
+        row = {"mode": self.mode, "confidence": self.confidence, **vars(self.measures)}
         return {**row, "doubt": self.doubt, "detail": self.detail}
 
     def summary(self, *, y_down: bool = False) -> str:

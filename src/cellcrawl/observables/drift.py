@@ -170,21 +170,22 @@ def _mean_path(tracks: Tracks) -> tuple[np.ndarray, np.ndarray]:
 
 def _alike(tracks: Tracks, start: float, end: float) -> tuple[float, float, int]:
     """Return how alike tracks go from a time to a time: Rayleigh's number, share, tracks."""
-    moved = []
-    for first, last in zip(tracks.starts[:-1].tolist(), tracks.starts[1:].tolist(), strict=True):
-        t = tracks.t[first:last]
-        a, b = np.searchsorted(t, [start, end * (1.0 + 1e-12)])
-        b = min(int(b), t.size - 1)
-        if b > a and t[b] - t[a] >= 0.5 * (end - start):
-            moved.append(
-                (
-                    tracks.x[first + b] - tracks.x[first + a],
-                    tracks.y[first + b] - tracks.y[first + a],
-                )
-            )
-    displacements = np.array(moved).reshape(-1, 2)
+    first, last = tracks.starts[:-1], tracks.starts[1:]
+    before, within = (_records_before(tracks, time) for time in (start, end * (1.0 + 1e-12)))
+    a, b = first + before, np.minimum(first + within, last - 1)
+    long = b > a
+    long[long] = tracks.t[b[long]] - tracks.t[a[long]] >= 0.5 * (end - start)
+    a, b = a[long], b[long]
+    displacements = np.column_stack([tracks.x[b] - tracks.x[a], tracks.y[b] - tracks.y[a]])
     power = float(np.sum(displacements**2))
     if power == 0.0:
-        return 0.0, 0.0, len(moved)
+        return 0.0, 0.0, a.size
     score = float(np.sum(displacements.sum(axis=0) ** 2)) / power
-    return score, score / len(moved), len(moved)
+    return score, score / a.size, a.size
+
+
+def _records_before(tracks: Tracks, time: float) -> np.ndarray:
+    """Return how many records of each track come before a time."""
+    passed = np.concatenate([[0], np.cumsum(tracks.t < time)])
+    number: np.ndarray = passed[tracks.starts[1:]] - passed[tracks.starts[:-1]]
+    return number

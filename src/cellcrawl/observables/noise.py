@@ -4,17 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from cellcrawl.observables.short_arrays import median
 from cellcrawl.observables.track import Track
 
 RAYLEIGH = 1.17741
 """Median distance in the plane over the standard deviation along an axis."""
-
-
-def median(values: np.ndarray) -> float:
-    """Return the median, as `np.median` does but in a tenth of its time for short arrays."""
-    ordered = np.sort(values)
-    half = ordered.size // 2
-    return float(ordered[half] if ordered.size % 2 else 0.5 * (ordered[half - 1] + ordered[half]))
+_OWN = np.arange(4)
 
 
 def position_noise(track: Track) -> float:
@@ -31,7 +26,7 @@ def position_noise(track: Track) -> float:
     if track.t.size < 7:
         return 0.0
     weights = _neighbour_weights(track.t)
-    scale = np.sqrt(1.0 + np.sum(weights**2, axis=0))
+    scale = np.sqrt(1.0 + np.add.reduce(weights * weights))
     apart = np.hypot(_residual(track.x, weights), _residual(track.y, weights)) / scale
     return median(apart) / RAYLEIGH
 
@@ -39,16 +34,20 @@ def position_noise(track: Track) -> float:
 def _neighbour_weights(times: np.ndarray) -> np.ndarray:
     """Return Lagrange weights (4, record - 4) of neighbours -2, -1, 1, 2 for inner records."""
     middle = times[2:-2]
-    near = np.stack([times[:-4], times[1:-3], times[3:-1], times[4:]])
+    near = _neighbours(times)
     apart = middle - near
     between = near[:, None] - near[None, :]
-    ratios = apart[None, :] / np.where(between == 0.0, 1.0, between)
-    ratios[np.arange(4), np.arange(4)] = 1.0
-    weights: np.ndarray = ratios.prod(axis=1)
+    between[_OWN, _OWN] = 1.0
+    ratios = apart[None, :] / between
+    ratios[_OWN, _OWN] = 1.0
+    weights: np.ndarray = np.multiply.reduce(ratios, axis=1)
     return weights
 
 
+def _neighbours(values: np.ndarray) -> np.ndarray:
+    return np.array([values[:-4], values[1:-3], values[3:-1], values[4:]])
+
+
 def _residual(values: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    near = np.stack([values[:-4], values[1:-3], values[3:-1], values[4:]])
-    residual: np.ndarray = values[2:-2] - np.sum(weights * near, axis=0)
+    residual: np.ndarray = values[2:-2] - np.add.reduce(weights * _neighbours(values))
     return residual

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from cellcrawl.observables.noise import median, position_noise
+from cellcrawl.observables.noise import position_noise
+from cellcrawl.observables.short_arrays import median, row_means
 from cellcrawl.observables.track import Track
 
 _FEWEST = 8  # records a track keeps at least; below that nothing is left out
@@ -89,7 +90,7 @@ def wild_records(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     size = x.size
     if size < _FEWEST:
         return none
-    steps = np.hypot(np.diff(x), np.diff(y))
+    steps = np.hypot(x[1:] - x[:-1], y[1:] - y[:-1])
     ordered = np.sort(steps)
     typical = ordered[int(np.searchsorted(ordered, 0.0, side="right") + size) // 2 - 1]
     if ordered[-1] <= _DETOUR * typical or typical == 0.0:
@@ -171,7 +172,7 @@ def _without_pauses(track: Track, noise: float) -> tuple[Track, np.ndarray]:
         for values in (t, x, y):
             values[first] = values[first : last + 1].mean()
     clock = track.t[0] + np.cumsum(passed)
-    return _part(replace(track, t=t, x=x, y=y), kept), clock[kept]
+    return _part(track.at(t, x, y), kept), clock[kept]
 
 
 def _find_pauses(track: Track, noise: float) -> list[tuple[int, int]]:
@@ -179,8 +180,8 @@ def _find_pauses(track: Track, noise: float) -> list[tuple[int, int]]:
     size = track.t.size
     if size < _FEWEST:
         return []
-    places = np.stack([track.x, track.y])
-    step = median(np.diff(track.t))
+    places = np.array([track.x, track.y])
+    step = median(track.t[1:] - track.t[:-1])
     speeds = _speeds(track, places, 1)
     pace = _at_pace(speeds) * step
     if pace == 0.0:
@@ -220,7 +221,7 @@ def _pauses(
         first, last = start, end - 1 + window
         if found and first <= found[-1][1]:
             continue
-        middle = places[:, first : last + 1].mean(axis=1, keepdims=True)
+        middle = row_means(places[:, first : last + 1])
         if last - first < 2 or _farthest(places[:, first : last + 1] - middle) > within:
             continue
         near = np.hypot(*(places - middle)) <= 0.5 * within
@@ -239,4 +240,4 @@ def _farthest(apart: np.ndarray) -> float:
 
 
 def _part(track: Track, kept: np.ndarray) -> Track:
-    return replace(track, t=track.t[kept], x=track.x[kept], y=track.y[kept])
+    return track.at(track.t[kept], track.x[kept], track.y[kept])

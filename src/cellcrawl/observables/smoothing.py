@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellcrawl.observables.noise import RAYLEIGH, median
+from cellcrawl.observables.noise import RAYLEIGH
 from cellcrawl.observables.records import SoundTrack, sound
+from cellcrawl.observables.short_arrays import evenly_spaced, median, slopes, unwrapped
 from cellcrawl.observables.track import Track
 
 HEADING_ERROR = 0.04
@@ -29,6 +30,8 @@ class SmoothTrack:
     ----------
     t, x, y, speed, heading : ndarray, shape (record,)
         Times, positions, speed on the move, and direction of motion in rad, unwrapped.
+    steps : ndarray, shape (2, record - 1)
+        Steps from one record to the next before smoothing.
     step : float
         Time from one record to the next, pauses left out.
     noise : float
@@ -46,6 +49,7 @@ class SmoothTrack:
     y: np.ndarray
     speed: np.ndarray
     heading: np.ndarray
+    steps: np.ndarray
     step: float
     noise: float
     width: float
@@ -72,28 +76,31 @@ def smooth(track: Track) -> SmoothTrack:
     """
     counted = sound(track)
     track, clock = counted.track, counted.clock
-    even = np.linspace(clock[0], clock[-1], clock.size)
+    first, last = float(clock[0]), float(clock[-1])
+    even = evenly_spaced(first, last, clock.size)
     step = float(even[1] - even[0])
-    places = np.stack([np.interp(even, clock, values) for values in (track.x, track.y)])
+    places = np.array([np.interp(even, clock, values) for values in (track.x, track.y)])
+    moved = places[:, 1:] - places[:, :-1]
     noise = counted.noise
     gaussian = _Gaussian(places)
     width, smoothed = 0.0, places
-    for _ in range(_ITERATIONS):
-        wanted = _width_for(noise, step, _pace(smoothed, step), float(clock[-1] - clock[0]))
+    for _ in range(_ITERATIONS if noise > 0.0 else 0):
+        wanted = _width_for(noise, step, _pace(smoothed, step), last - first)
         if wanted <= 1.05 * width or wanted < _NARROWEST * step:
             break
         width, smoothed = wanted, gaussian.smoothed(wanted / step)
     while width > _NARROWEST * step and _removed(places, smoothed) > _ROUGH * noise:
         width *= 0.7
         smoothed = gaussian.smoothed(width / step)
-    velocity = np.gradient(smoothed, step, axis=1, edge_order=2)
+    velocity = slopes(smoothed, step)
     speed = np.hypot(velocity[0], velocity[1])
     return SmoothTrack(
         np.interp(even, clock, track.t),
         smoothed[0],
         smoothed[1],
         speed,
-        np.unwrap(np.arctan2(velocity[1], velocity[0])),
+        unwrapped(np.arctan2(velocity[1], velocity[0])),
+        moved,
         step,
         noise,
         width,
@@ -107,7 +114,7 @@ class _Gaussian:
 
     def __init__(self, rows: np.ndarray) -> None:
         size = rows.shape[1]
-        self._line = rows[:, :1] + (rows[:, -1:] - rows[:, :1]) * np.linspace(0.0, 1.0, size)
+        self._line = rows[:, :1] + (rows[:, -1:] - rows[:, :1]) * evenly_spaced(0.0, 1.0, size)
         inside = rows - self._line
         odd = np.concatenate([inside[:, :-1], -inside[:, :0:-1]], axis=1)
         self._spectrum = np.fft.rfft(odd, axis=1)
@@ -122,13 +129,11 @@ class _Gaussian:
 
 
 def _pace(places: np.ndarray, step: float) -> float:
-    moved = np.diff(places, axis=1)
+    moved = places[:, 1:] - places[:, :-1]
     return median(np.hypot(moved[0], moved[1])) / step
 
 
 def _width_for(noise: float, step: float, pace: float, duration: float) -> float:
-    if noise == 0.0:
-        return 0.0
     widest = _WIDEST * duration
     allowed = HEADING_ERROR * pace
     if allowed <= 0.0:

@@ -13,7 +13,7 @@ from cellcrawl.observables.inputs import records_with
 from cellcrawl.simulation.units import units_of
 from cellcrawl.validation import real_array, without_masked
 
-__all__ = ["Track", "as_track"]
+__all__ = ["Track", "as_track", "track_of_checked"]
 
 
 def as_track(run: Any, x: Any = None, y: Any = None, *, at_least: int = 2) -> Track:
@@ -59,9 +59,13 @@ def as_track(run: Any, x: Any = None, y: Any = None, *, at_least: int = 2) -> Tr
 
 def _track_of(run: xr.Dataset, at_least: int) -> Track:
     records_with(run, "centroid_x", "centroid_y", at_least=at_least)
-    t, x, y = (
-        real_array(name, run[name].values, (None,)) for name in ("time", "centroid_x", "centroid_y")
-    )
+    return track_of_checked(run)
+
+
+def track_of_checked(run: xr.Dataset) -> Track:
+    """Return the centroid track of a run whose time and centroid have been checked."""
+    names = ("time", "centroid_x", "centroid_y")
+    t, x, y = (np.array(run.variables[name].values, dtype=float) for name in names)
     units = units_of(run)
     return Track(t, x, y, length_units=units.label("length"), time_units=units.label("time"))
 

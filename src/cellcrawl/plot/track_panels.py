@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from matplotlib.font_manager import FontProperties
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar  # type: ignore[import-untyped]
 
@@ -58,7 +59,10 @@ def draw_paths(
     *,
     together: bool,
 ) -> None:
-    """Draw paths in the colours of their modes: in place, or all from one start."""
+    """Draw paths in the colours of their modes: in place, or all from one start.
+
+    A dot marks the end of each.
+    """
     lines, colours = [], []
     for i in drawn(tracks):
         track = on_screen(tracks[i])
@@ -82,7 +86,7 @@ def draw_paths(
     _scale_bar(ax, half, tracks[0].length_units)
 
 
-def _scale_bar(ax: Axes, half: float, units: str) -> None:
+def _scale_bar(ax: Axes, half: float, units: str, *, small: bool = False) -> None:
     size = round_length(0.5 * half)
     ax.add_artist(
         AnchoredSizeBar(
@@ -95,6 +99,7 @@ def _scale_bar(ax: Axes, half: float, units: str) -> None:
             sep=2,
             frameon=False,
             color=on(ax, INK),
+            fontproperties=FontProperties(size=5.5 if small else 7.0),
         )
     )
 
@@ -124,7 +129,7 @@ def draw_counts(ax: Axes, results: Sequence[Classification | None]) -> None:
     ax.set_ylim(len(rows) - 0.4, -0.6)
     ax.set_xlim(0.0, 1.2 * max(row[2] for row in rows))
     ax.xaxis.set_major_locator(MaxNLocator(4, integer=True))
-    ax.set_xlabel("tracks (full: as many as are right)")
+    ax.set_xlabel("tracks (full part: mean confidence)")
     ax.spines[["top", "right"]].set_visible(False)
 
 
@@ -207,13 +212,19 @@ def _ensemble(
 def draw_turns(
     path: Axes, angle: Axes, track: Track, result: Classification | None, name: str
 ) -> None:
-    """Draw one track and its heading over time, turns to the left red and to the right blue."""
+    """Draw one track and its heading over time, turns to the left red and to the right blue.
+
+    A dot marks the end.
+    """
     seen = on_screen(track)
     path.plot(seen.x, seen.y, color=UNNAMED, linewidth=0.6)
-    path.plot(seen.x[0], seen.y[0], "o", color=on(path, INK), markersize=2.0)
+    path.plot(seen.x[-1], seen.y[-1], "o", color=on(path, INK), markersize=2.0)  # the end
     path.set_aspect("equal", adjustable="datalim")
     path.margins(0.12)
     path.set_axis_off()
+    half = 0.5 * float(max(np.ptp(seen.x), np.ptp(seen.y)))
+    if half > 0.0:
+        _scale_bar(path, half, track.length_units, small=True)
     mode = f"{result.mode} {result.confidence:.2f}" if result else "not named"
     path.set_title(f"{name}  {mode}".strip(), color=on(path, INK))
     if len(seen) < 8 or (result is not None and result.mode == "stationary"):

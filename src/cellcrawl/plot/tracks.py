@@ -43,7 +43,7 @@ def tracks(
     displacement with a persistent random walk fitted to the tracks (see
     `observables.persistent_walk`), and how much of the way goes in each direction. Below, single
     tracks of every mode with the heading over time in whole turns, turns to the left red and to
-    the right blue.
+    the right blue. A dot marks the end of a track.
 
     Parameters
     ----------
@@ -106,8 +106,10 @@ def tracks(
                     for axes in pair:
                         axes.set_axis_off()
             below.supylabel("heading (turns)", fontsize=7)
+            time = shown_units(given[0].time_units)
+            below.supxlabel(f"time ({time})" if time else "time", fontsize=7)
         drift = shared_drift(given)
-        lines = [title or f"{len(given)} tracks, {given.t.size} records"]
+        lines = [title or f"{_counted(len(given))}, {given.t.size} records"]
         lines += [str(drift).split(";")[0]] if drift.noticed else []
         figure.suptitle("\n".join(lines), x=0.01, ha="left")
     return figure
@@ -157,7 +159,7 @@ def compare_tracks(
             fit = draw_displacement(panels["msd"], given)
             draw_rose(panels["rose"], given)
             panels["msd"].set_title(_told(fit, given[0]).replace(", S", "\n S"))
-            column.suptitle(f"{name}: {len(given)} tracks")
+            column.suptitle(f"{name}: {_counted(len(given))}")
     return figure
 
 
@@ -205,6 +207,10 @@ def _examples(given: Tracks, found: Results, count: int) -> list[int]:
             if queue and len(chosen) < count:
                 chosen.append(queue.pop(0))
     return sorted(chosen, key=lambda i: MODES.index(found[i].mode))  # type: ignore[union-attr]
+
+
+def _counted(number: int) -> str:
+    return "1 track" if number == 1 else f"{number} tracks"
 
 
 def _told(fit: PersistentWalk | None, track: Track) -> str:
