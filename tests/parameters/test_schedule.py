@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import cellcrawl as cc
-from cellcrawl.parameters import Conditions
+from cellcrawl.solvers.conditions import Conditions
 
 P = cc.Parameters()
 

@@ -11,9 +11,9 @@ import pytest
 import cellcrawl as cc
 from cellcrawl.command_line.main import run as command
 from cellcrawl.curve import fourier
-from cellcrawl.parameters import Conditions
 from cellcrawl.simulation.tension_law import TensionLaw
 from cellcrawl.solvers import SOLVERS, Instant
+from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.solvers.paper import PaperSolver
 from tests.conftest import check_start
 

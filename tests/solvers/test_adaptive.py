@@ -10,10 +10,11 @@ import pytest
 import cellcrawl as cc
 from cellcrawl.curve import Curve, first_crossing
 from cellcrawl.errors import InputError
-from cellcrawl.parameters import CONSTANT, Conditions, Schedule
+from cellcrawl.parameters import CONSTANT, Schedule
 from cellcrawl.solvers import Frame
 from cellcrawl.solvers.adaptive import AdaptiveSolver
 from cellcrawl.solvers.adaptive import state as layout
+from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.verification import orders
 from tests.conftest import check_start, reflected, rotated
 

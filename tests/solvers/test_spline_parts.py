@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import cellcrawl as cc
 from cellcrawl.laws.law import PAPER
-from cellcrawl.parameters import Conditions
+from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.solvers.spline import balance, outline, periodic
 from cellcrawl.solvers.spline.frames import measured
 from cellcrawl.solvers.spline.linkers import LINKER_ROWS, second_derivative_after

@@ -8,8 +8,9 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from cellcrawl.parameters import Conditions, Parameters
+from cellcrawl.parameters import Parameters
 from cellcrawl.solvers import Instant, Solver
+from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.starts import CellState, PerturbedCircle, RandomPerturbation
 
 POINTS: Final = ((26, 600), (24, 540), (36, 560), (16, 600), (56, 560))

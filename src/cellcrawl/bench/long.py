@@ -18,8 +18,9 @@ from cellcrawl.bench.cases import LAWS, LONG, POINTS, Case, check_start, errors,
 from cellcrawl.bench.reach import Target
 from cellcrawl.bench.references import References
 from cellcrawl.bench.work_precision import Solve, prepare, prepare_rival, timed, warm_up
-from cellcrawl.parameters import Conditions, Parameters
+from cellcrawl.parameters import Parameters
 from cellcrawl.solvers import SOLVERS
+from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.starts import PerturbedCircle
 
 T_END: Final = 2.0 * LONG

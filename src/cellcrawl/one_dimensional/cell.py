@@ -11,7 +11,8 @@ from cellcrawl._compile import kernel
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.laws.law import PAPER
-from cellcrawl.parameters import Conditions, Parameters
+from cellcrawl.laws.rest import local_values
+from cellcrawl.parameters import Parameters
 from cellcrawl.physics.slip_bond import balance
 from cellcrawl.solvers.base import pointwise
 from cellcrawl.validation import real_number, shown
@@ -89,7 +90,7 @@ def velocity_and_friction(
     parameters: Parameters, off_rate: np.ndarray, bound_fraction: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the outward velocity and the friction of edges, arrays of any one shape."""
-    edge = Conditions(parameters).edge(0.0, 1)[:, 0]
+    edge = np.array([local_values(parameters, PAPER)[name] for name in PAPER.rows])
     y = np.log(off_rate)
     _, velocity, friction = pointwise(PAPER, y, bound_fraction, 0.0, 0.0, edge)
     return velocity, friction

@@ -1,6 +1,5 @@
 """What a cell is made of: dimensionless parameters, physical ones, and how they change in time."""
 
-from cellcrawl.parameters.conditions import Conditions
 from cellcrawl.parameters.dimensionless import DESCRIPTIONS, ELASTICITIES, Parameters
 from cellcrawl.parameters.physical import QUANTITIES, PhysicalParameters
 from cellcrawl.parameters.scales import KINDS, Scales
@@ -14,7 +13,6 @@ __all__ = [
     "KINDS",
     "QUANTITIES",
     "ActivationEnergies",
-    "Conditions",
     "Parameters",
     "PhysicalParameters",
     "Scales",

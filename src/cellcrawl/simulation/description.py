@@ -13,11 +13,12 @@ from cellcrawl.errors import InputError, nearest_name
 from cellcrawl.laws import as_law
 from cellcrawl.laws.law import PAPER
 from cellcrawl.laws.rest import CellAtRest, rest_state
-from cellcrawl.parameters import CONSTANT, DESCRIPTIONS, Conditions, Parameters, Schedule
+from cellcrawl.parameters import CONSTANT, DESCRIPTIONS, Parameters, Schedule
 from cellcrawl.simulation.dataset import SCHEMA_VERSION, package_version
 from cellcrawl.simulation.events import crossing_at
 from cellcrawl.simulation.following import check_records
 from cellcrawl.solvers import SOLVERS, Solver
+from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.starts import Eigenmode, FromOutline, PerturbedCircle, RandomPerturbation, Start
 from cellcrawl.surroundings import as_surroundings
 from cellcrawl.validation import one_of, real_number, shown, table

@@ -13,7 +13,7 @@ from cellcrawl.data import FIELDS, SCHEMA_VERSION, decode_attribute
 from cellcrawl.errors import CellcrawlError, InputError, StorageError
 from cellcrawl.laws import as_law
 from cellcrawl.laws.law import PAPER
-from cellcrawl.parameters import CONSTANT, Conditions, Parameters, Schedule
+from cellcrawl.parameters import CONSTANT, Parameters, Schedule
 from cellcrawl.simulation.description import DEFAULT_SOLVER, RunDescription, solver_named
 from cellcrawl.simulation.events import RESUMABLE
 from cellcrawl.simulation.following import Follower, Kept, same_time
@@ -22,6 +22,7 @@ from cellcrawl.simulation.recorder import Checkpoint, MemoryRecorder, Recorder, 
 from cellcrawl.simulation.storage import RunStore
 from cellcrawl.simulation.tension_law import KEY, TensionLaw
 from cellcrawl.solvers import Solver
+from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.starts import RandomPerturbation, Start
 from cellcrawl.surroundings import as_surroundings
 from cellcrawl.validation import real_number

@@ -12,8 +12,8 @@ import math
 
 import numpy as np
 
-from cellcrawl.parameters import Conditions
 from cellcrawl.solvers import Breakdown, Instant
+from cellcrawl.solvers.conditions import Conditions
 
 KEY = "tension_law"  # of the law's own state in a checkpoint
 

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cellcrawl.laws.law import Law
-from cellcrawl.parameters import Conditions
+from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.starts.base import CellState
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from cellcrawl.parameters import Conditions, Parameters
+from cellcrawl.parameters import Parameters
 from cellcrawl.solvers import SOLVERS, Frame, Solver
+from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.starts import Start
 
 

@@ -14,8 +14,9 @@ from typing import Any, Final
 import numpy as np
 
 from cellcrawl.curve import Curve
-from cellcrawl.parameters import Conditions, Parameters
+from cellcrawl.parameters import Parameters
 from cellcrawl.solvers import SOLVERS, Frame
+from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.starts import CellState
 
 DRIFT: Final = 0.3  # speed over radius

@@ -10,12 +10,13 @@ from typing import Any, Final
 import numpy as np
 
 from cellcrawl.bench.cases import LAWS, check_start
-from cellcrawl.parameters import Conditions, Parameters
+from cellcrawl.parameters import Parameters
 from cellcrawl.solvers.adaptive import AdaptiveSolver
 from cellcrawl.solvers.adaptive import state as layout
 from cellcrawl.solvers.adaptive.mesh import MESH_ROWS, hold
 from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, renew_rates
 from cellcrawl.solvers.adaptive.staggered import HALO
+from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.verification import manufactured
 from cellcrawl.verification.agreement import CELL, disagreement, last, summary
 from cellcrawl.verification.check import Result, at_least, at_most, near

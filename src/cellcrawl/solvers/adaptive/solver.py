@@ -8,7 +8,6 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cellcrawl.errors import InputError
-from cellcrawl.parameters import Conditions
 from cellcrawl.solvers.adaptive import drive, resolution
 from cellcrawl.solvers.adaptive import state as layout
 from cellcrawl.solvers.adaptive.differences import DIFFERENCES
@@ -21,6 +20,7 @@ from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, renew_rates
 from cellcrawl.solvers.adaptive.staggered import HALO
 from cellcrawl.solvers.adaptive.step_error import relative_size
 from cellcrawl.solvers.base import Breakdown, Frame, Instant, Solver
+from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.starts.base import CellState
 from cellcrawl.validation import real_number, whole_number
 

@@ -9,7 +9,6 @@ import numpy as np
 
 from cellcrawl.errors import InputError
 from cellcrawl.linear import fastest_decay
-from cellcrawl.parameters import Conditions
 from cellcrawl.physics.force_balance import SOLVED, solve_bonds
 from cellcrawl.solvers.base import (
     Breakdown,
@@ -17,6 +16,7 @@ from cellcrawl.solvers.base import (
     Solver,
     pointwise,
 )
+from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.solvers.fixed_steps import ON_GRID, steps_towards
 from cellcrawl.solvers.paper import step as paper_step
 from cellcrawl.solvers.paper import tangent_angle

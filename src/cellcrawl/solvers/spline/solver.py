@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cellcrawl.errors import InputError
-from cellcrawl.parameters import Conditions
 from cellcrawl.solvers.base import Breakdown, Frame, Solver
+from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.solvers.fixed_steps import ON_GRID, steps_towards
 from cellcrawl.solvers.spline import balance, drive, frames, outline
 from cellcrawl.solvers.spline.outline import LOG_R, N, X, Y

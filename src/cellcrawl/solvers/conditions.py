@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cellcrawl.laws.law import LOCAL, PAPER, Law
+from cellcrawl.laws.law import PAPER, Law
+from cellcrawl.laws.rest import local_values
 from cellcrawl.parameters.dimensionless import Parameters
 from cellcrawl.parameters.schedule import CONSTANT, Schedule
 
@@ -80,6 +81,5 @@ class Conditions:
 
 @functools.lru_cache(maxsize=16)
 def _edge_column(parameters: Parameters, laws: Law) -> np.ndarray:
-    of_cell = {name: getattr(parameters, name) for name in LOCAL if name != "pressure"}
-    values = {**of_cell, "pressure": 0.0, **laws.values}
+    values = local_values(parameters, laws)
     return np.array([[values[name]] for name in laws.rows])
