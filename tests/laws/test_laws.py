@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import math
 import pickle
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -231,3 +233,23 @@ def test_the_line_model_and_the_rivals_have_the_same_law():
         "balance/phi": laws.friction_slope(y, r, n, values["zeta_1"]),
     }.items():
         assert PAPER.compiled.evaluate(name, values) == pytest.approx(direct, rel=1e-14), name
+
+
+def test_a_law_of_a_script_is_found_by_the_workers_of_its_sweep_and_by_its_name(tmp_path):
+    script = tmp_path / "glued.py"
+    script.write_text(
+        "import cellcrawl as cc\n"
+        "class Glued(cc.laws.Law):\n"
+        "    gain = cc.laws.Parameter(0.5, 0.0, 1.0, 'of the binding')\n"
+        "    def binding(self, phi, r, n, p):\n"
+        "        return (1.0 + self.gain) * p.r_on * (1.0 - n) - r * n\n"
+        "if __name__ == '__main__':\n"
+        "    print(Glued().describe()['kind'])\n"
+        "    from cellcrawl.sweeps.executors import _see_that_workers_know\n"
+        "    _see_that_workers_know(cc.Grid(axes={'r_on': [20.0]}, laws=Glued()))\n"
+        "    from cellcrawl.laws.law import described\n"
+        "    assert described(Glued().describe(), cc.laws.Law, 'law set') == Glued()\n"
+    )
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == ["glued:Glued"]

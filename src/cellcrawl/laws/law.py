@@ -6,6 +6,7 @@ import functools
 import importlib
 import sys
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
 from cellcrawl.errors import InputError
@@ -65,7 +66,7 @@ class Described:
     def describe(self) -> dict[str, Any]:
         """Return the class and its numbers as plain values, from which `described` makes it."""
         kind = type(self)
-        return {"kind": f"{kind.__module__}:{kind.__qualname__}", "values": dict(self.values)}
+        return {"kind": f"{_home(kind)}:{kind.__qualname__}", "values": dict(self.values)}
 
     def replace(self, **values: float) -> Self:
         """Return the same with other numbers."""
@@ -165,6 +166,24 @@ class Paper(Law):
 PAPER: Final = Paper()
 
 
+def _script() -> str | None:
+    """Return the name under which the script that runs could be imported."""
+    file = getattr(sys.modules["__main__"], "__file__", None)
+    return None if file is None else Path(file).stem
+
+
+def _home(kind: type[Any]) -> str:
+    """Return the module of a class; that of one in the script that runs is the script's name."""
+    own = kind.__module__ in ("__main__", "__mp_main__")
+    return (own and _script()) or kind.__module__
+
+
+def _module(name: str) -> Any:
+    if name == _script():
+        return sys.modules["__main__"]
+    return sys.modules.get(name) or importlib.import_module(name)
+
+
 def described(content: Any, base: type[Any], what: str) -> Any:
     """Return what `Described.describe` described, or raise `InputError` in one line.
 
@@ -176,7 +195,7 @@ def described(content: Any, base: type[Any], what: str) -> Any:
     except (TypeError, KeyError, AttributeError):
         raise InputError(f"{what} cannot be read: {shown(content)}") from None
     try:
-        found: Any = sys.modules.get(module) or importlib.import_module(module)
+        found = _module(module)
         for part in name.split("."):
             found = getattr(found, part)
         made = found(**values)

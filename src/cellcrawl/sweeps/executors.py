@@ -129,33 +129,37 @@ def _silence_dask() -> None:
 
 
 def _see_that_workers_know(grid: Grid) -> None:
-    """Refuse a start of a class that is defined where no new process finds it."""
+    """Refuse a start or a law of a class that is defined where no new process finds it."""
     script = getattr(sys.modules["__main__"], "__file__", None)
     if (_needs_main(grid) and (script is None or not Path(script).is_file())) or not all(
-        map(_can_be_sent, _starts(grid))
+        map(_can_be_sent, _of_users(grid))
     ):
         raise InputError(
-            "a start is of a class that is defined in this notebook, session or function, where "
-            "worker processes cannot find it: put the class in a file of its own and import it, "
+            "a start, law or surrounding is of a class that is defined in this notebook, session or "
+            "function, where worker processes cannot find it: put the class in a file of its own and import it, "
             "or give executor=concurrent.futures.ThreadPoolExecutor(1)"
         )
 
 
 def _needs_main(grid: Grid) -> bool:
-    """Whether a start is of a class that the user's script defines."""
-    return any(type(start).__module__ == "__main__" for start in _starts(grid))
+    """Whether something in the grid is of a class that the user's script defines."""
+    return any(type(one).__module__ == "__main__" for one in _of_users(grid))
 
 
-def _starts(grid: Grid) -> list[Any]:
-    starts = [grid.start, *grid.axes.get("start", ())]
-    return starts + [point["start"] for point in grid.points if "start" in point]
+def _of_users(grid: Grid) -> list[Any]:
+    """Return what in a grid may be of a class of the user's: starts, laws, surroundings."""
+    found: list[Any] = []
+    for name in ("start", "laws", "surroundings"):
+        found += [getattr(grid, name), *grid.axes.get(name, ())]
+        found += [point[name] for point in grid.points if name in point]
+    return [part for one in found if one is not None for part in getattr(one, "parts", (one,))]
 
 
-def _can_be_sent(start: Any) -> bool:
-    """Whether a process that knows our path of modules can make the start from its pickle."""
-    home = type(start).__module__
+def _can_be_sent(one: Any) -> bool:
+    """Whether a process that knows our path of modules can make something from its pickle."""
+    home = type(one).__module__
     try:
-        pickle.dumps(start)
+        pickle.dumps(one)
         return home == "__main__" or importlib.util.find_spec(home) is not None
     except Exception:  # a class within a function, a module without a file
         return False

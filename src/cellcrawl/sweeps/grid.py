@@ -92,6 +92,8 @@ class Grid:
             )
         object.__setattr__(self, "axes", axes)
         object.__setattr__(self, "points", points)
+        for name in WORLD:
+            object.__setattr__(self, name, value_of(name, getattr(self, name)))
         self._check()
 
     @property
