@@ -135,8 +135,9 @@ def _see_that_workers_know(grid: Grid) -> None:
         map(_can_be_sent, _of_users(grid))
     ):
         raise InputError(
-            "a start, law or surrounding is of a class that is defined in this notebook, session or "
-            "function, where worker processes cannot find it: put the class in a file of its own and import it, "
+            "a start, law or surrounding is of a class that is defined in this notebook, session "
+            "or function, where worker processes cannot find it: put the class in a file of its "
+            "own and import it, "
             "or give executor=concurrent.futures.ThreadPoolExecutor(1)"
         )
 
