@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping, Sequence
+from types import SimpleNamespace
 from typing import Any, ClassVar, Final
 
 import numpy as np
@@ -54,8 +55,9 @@ class Surrounding(Described):
         return np.empty(0)
 
     def look_up(self, function: str, at: Place) -> Any:
-        """Return what a compiled function of `cellcrawl.surroundings.lookup` makes of the table."""
-        raise InputError("look_up is for formulas that are being compiled")
+        """Return what a function of `cellcrawl.surroundings.lookup` makes of the table there."""
+        looked_up = np.vectorize(_LOOKUPS[function], excluded=(0, 1), otypes=[float])
+        return looked_up(self.table(), 0.0, at.x, at.y)
 
 
 class CompiledSurroundings(Compiled):
@@ -98,6 +100,13 @@ class Surroundings:
 
     def __repr__(self) -> str:
         return f"Surroundings({list(self.parts)!r})"
+
+    def values(self, p: Mapping[str, Any], at: Place) -> dict[str, Any]:
+        """Return the local parameters at places, from those far from all by name."""
+        now = dict(p)
+        for part in self.parts:
+            now |= part.change(at, SimpleNamespace(**now))
+        return now
 
     def compiled(self, law: Law) -> CompiledSurroundings:
         """Return them for kernels under a law."""
