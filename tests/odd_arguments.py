@@ -148,6 +148,12 @@ def _calls(folder: Path) -> Iterator[Call]:
     yield call(cc.laws.CatchSlip, catch=1.0, catch_force=0.5, slip=1.0, slip_force=1.0)
     yield call(cc.laws.check, law=cc.laws.Stiffness(), parameters=p)
     yield call(cc.laws.rest_state, parameters=p, laws=cc.laws.Stiffness(chi=0.5))
+    yield call(cc.laws.rest_states, parameters=p, laws=cc.laws.Stiffness(chi=0.5))
+    yield call(linear.growth_rates, parameters=p, k=2, laws="stiffness")
+    yield call(
+        cc.simulate, parameters=p, t_end=0.02, laws="stiffness", surroundings=None, rtol=1e-2,
+        nodes=32,
+    )  # fmt: skip
     yield call(cc.surroundings.as_surroundings, given=cc.surroundings.Stripes())
     yield call(cc.surroundings.Stripes, period=2.0, width=0.5, between=0.0, angle=0.0)
     yield call(cc.surroundings.Pattern, image=np.ones((3, 3)), pixel=0.5, parameter="r_on", x=0.0)

@@ -48,7 +48,9 @@ def test_every_public_function_is_called_with_all_its_arguments(calls):
     for call in calls:
         for name in (call.name, getattr(call.function, "__qualname__", "")):
             given.setdefault(name.rpartition(".")[2], set()).update(call.arguments())
-    for _, function in public_functions():
+    for home, function in public_functions():
+        if home.startswith("laws.") and hasattr(np, function.__name__):
+            continue  # mathematics for the formulas of laws, NumPy's
         asked = {
             argument
             for argument, parameter in inspect.signature(function).parameters.items()
