@@ -8,6 +8,7 @@ import fractions
 import functools
 import inspect
 import math
+import time
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -141,6 +142,17 @@ def _calls(folder: Path) -> Iterator[Call]:
     yield call(schedule.before, parameters=p, time=0.5)
     yield call(schedule.next_break, time=0.5)
     yield call(schedule.varies, start=0.0, end=0.5)
+    # laws and surroundings
+    yield call(cc.laws.as_law, given="stiffness")
+    yield call(cc.laws.Stiffness, chi=0.5)
+    yield call(cc.laws.CatchSlip, catch=1.0, catch_force=0.5, slip=1.0, slip_force=1.0)
+    yield call(cc.laws.check, law=cc.laws.Stiffness(), parameters=p)
+    yield call(cc.laws.rest_state, parameters=p, laws=cc.laws.Stiffness(chi=0.5))
+    yield call(cc.surroundings.as_surroundings, given=cc.surroundings.Stripes())
+    yield call(cc.surroundings.Stripes, period=2.0, width=0.5, between=0.0, angle=0.0)
+    yield call(cc.surroundings.Pattern, image=np.ones((3, 3)), pixel=0.5, parameter="r_on", x=0.0)
+    yield call(cc.surroundings.Walls, corners=square, room=True, stiffness=1e4)
+    yield call(cc.surroundings.Gradient, parameter="r_on", x=1.0, least=0.0)
     # starts
     yield call(cc.RandomPerturbation, seed=2, amplitude=1e-4, modes=10)
     yield call(cc.PerturbedCircle, radius={2: (0.1, 0.0)}, bound_fraction={2: (0.1, 0.0)})
@@ -204,6 +216,14 @@ def _calls(folder: Path) -> Iterator[Call]:
         image_coordinates=False,
     )  # fmt: skip
     yield call(cc.write_tracks, path=folder / "out.csv", tracks=read, form=None)
+    seen = folder / "cells.geojson"
+    yield call(
+        cc.write_outlines, path=seen, outlines=list(observed.outlines), form=None, pixel=0.05
+    )
+    cc.write_outlines(seen, observed.outlines)
+    yield call(
+        cc.read_outlines, path=seen, frame_interval=None, pixel_size=None, image_coordinates=False
+    )
     # observables
     for name in observe.__all__:
         function = getattr(observe, name)
@@ -302,7 +322,7 @@ def _calls(folder: Path) -> Iterator[Call]:
     )  # fmt: skip
     yield call(
         plot.snapshots, dataset=run, times=[0.1, 0.2], field="bound_fraction", limits=limits,
-        velocity=False, colorbar=True, axes=list(Figure().subplots(2)),
+        velocity=False, colorbar=True, colormap="magma", axes=list(Figure().subplots(2)),
     )  # fmt: skip
     yield call(
         plot.cycle, dataset=long, start=1.0, duration=10.0, shapes=3, quantity="tension",
@@ -322,11 +342,15 @@ def _calls(folder: Path) -> Iterator[Call]:
         axes=list(Figure().subplots(2)),
         r_on=[20, 30],
     )
-    yield call(plot.flat_edge, dataset=flat, field="bound_fraction", limits=limits, ax=ax())
+    yield call(
+        plot.flat_edge, dataset=flat, field="bound_fraction", limits=limits, colormap="magma",
+        colorbar=True, ax=ax(),
+    )  # fmt: skip
     yield call(plot.growth, dataset=run, k=(1, 2), field="bound_fraction", legend=True, ax=ax())
     yield call(
-        plot.kymograph, dataset=run, field="bound_fraction", origin="front", limits=limits, ax=ax()
-    )
+        plot.kymograph, dataset=run, field="bound_fraction", origin="front", limits=limits,
+        colormap="magma", colorbar=True, ax=ax(),
+    )  # fmt: skip
     yield call(
         plot.kymographs, dataset=run, fields=["friction", "theta"], origin="front",
         limits={"friction": (0.0, 9e3)}, colormap="magma", colorbar=False,
@@ -339,7 +363,12 @@ def _calls(folder: Path) -> Iterator[Call]:
     yield call(styled, rc={"lines.linewidth": 2.0}, width=3.0, font_size=9.0, colormap="magma")
     yield call(
         plot.path, dataset=run, every=0.2, field="bound_fraction", limits=limits, colorbar=True,
-        times=True, ax=ax(),
+        times=True, colormap="magma", ax=ax(),
+    )  # fmt: skip
+    yield call(plot.tracks, tracks=read, results=[cc.classify(long)], title="one", examples=1)
+    yield call(
+        plot.compare_tracks, series={"a": read, "b": read},
+        results={name: [cc.classify(long)] for name in "ab"},
     )  # fmt: skip
     diagram = one.phase_diagram(
         p,
@@ -362,7 +391,8 @@ def _calls(folder: Path) -> Iterator[Call]:
     )  # fmt: skip
     yield call(
         cc.movie, dataset=run, path=folder / "cell.gif", fps=25.0, seconds=0.1, every=None,
-        view="follow", field="bound_fraction", limits=limits, size=(64, 64), progress=False,
+        view="follow", field="bound_fraction", limits=limits, colormap="magma", size=(64, 64),
+        progress=False,
     )  # fmt: skip
     yield call(
         cc.sweeps.refine, grid=grid, output=sweep.path, executor=InProcess(), levels=1, x="r_on",
@@ -370,15 +400,46 @@ def _calls(folder: Path) -> Iterator[Call]:
     )  # fmt: skip
 
 
-def raw_error(function: Callable[..., Any], arguments: Arguments) -> str | None:
-    """Return the error of a call if it is none of ours, or ours on more than a line."""
+class Answers(NamedTuple):
+    """What odd calls gave: raw errors by call, argument and number of the value; counts."""
+
+    raw: dict[tuple[str, str, int], str]
+    refused: int
+    slowest: tuple[float, str]
+    """Seconds, and the call."""
+
+
+def odd_calls(calls: list[Call], seed: int, count: int) -> Answers:
+    """Make calls with one odd value each, drawn by ``seed``."""
+    draw = np.random.default_rng(seed)
+    raw, refused, slowest = {}, 0, (0.0, "")
+    for _ in range(count):
+        call = calls[draw.integers(len(calls))]
+        arguments = call.arguments()
+        name = str(draw.choice(list(arguments)))
+        number = int(draw.integers(len(odd_values())))
+        arguments[name] = odd_values()[number]
+        began = time.perf_counter()
+        error = raw_error(call.function, arguments)
+        slowest = max(slowest, (time.perf_counter() - began, f"{call.name}, {name}, {number}"))
+        refused += error == REFUSED
+        if error not in ("", REFUSED):
+            raw[call.name, name, number] = error
+    return Answers(raw, refused, slowest)
+
+
+REFUSED = "refused in one line"
+
+
+def raw_error(function: Callable[..., Any], arguments: Arguments) -> str:
+    """Return nothing, `REFUSED`, or the error of a call that is none of ours or of many lines."""
     try:
         with warnings.catch_warnings(), mpl.rc_context():
             warnings.simplefilter("ignore")
             function(**arguments)
     except cc.CellcrawlError as error:
         text = str(error)
-        return None if text and len(text) < 700 and "\n" not in text else f"long: {text[:300]!r}"
+        return REFUSED if text and len(text) < 700 and "\n" not in text else f"long: {text[:300]!r}"
     except Exception as error:
         return f"{type(error).__name__}: {str(error)[:160]}"
-    return None
+    return ""

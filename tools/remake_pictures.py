@@ -65,6 +65,11 @@ def temperature(work: Path) -> None:
     command("examples/temperature.py", IMAGES / "temperature")
 
 
+def laws(work: Path) -> None:
+    """Cells under other laws and in other surroundings."""
+    command("examples/laws.py", IMAGES / "laws")
+
+
 def figures(work: Path) -> None:
     """The paper's figures."""
     folder = work / "reproduction"
@@ -137,6 +142,7 @@ STEPS = (
     Step("tracks", ("docs/images/trackmate*.png",), tracks),
     Step("cells", ("docs/images/three-cells.png", "docs/images/gallery/*.png"), cells),
     Step("temperature", ("docs/images/temperature/*.png",), temperature),
+    Step("laws", ("docs/images/laws/*.png",), laws),
     Step("one-dimensional", ("docs/images/one_dimensional/*.png",), one_dimensional),
     Step("figures", ("docs/images/reproduce/*.png",), figures),
     Step("sweeps", ("docs/images/sweeps/*.png",), sweeps),

@@ -66,14 +66,41 @@ def sides() -> str:
     return table(["cell", "seeds", "found", "how many", "share, 95 %"], lines) if lines else ""
 
 
-PARTS = {"errors": errors, "states": exact_states, "amplified": amplified, "sides": sides}
+def endings() -> str:
+    """Return how runs that leave the model end in several solvers."""
+    content = load("endings")
+    names = list(dict.fromkeys(run["run"] for run in content["runs"]))
+    lines = []
+    for cell, seed in dict.fromkeys((tuple(r["cell"]), r["seed"]) for r in content["runs"]):
+        mine = {
+            run["run"]: run
+            for run in content["runs"]
+            if (tuple(run["cell"]), run["seed"]) == (cell, seed)
+        }
+        cells = (
+            f"{mine[name]['status'].replace('completed', 'whole at')} {mine[name]['end']:.2f}"
+            for name in names
+        )
+        bent = (mine[name]["bends"][1] for name in names)
+        told = ", ".join("never" if time is None else f"{time:.2f}" for time in bent)
+        lines.append(["({:g}, {:g})".format(*cell), str(seed), *cells, told])
+    return table(["cell", "seed", *names, f"curvature -{content['bends'][1]:g} at"], lines)
+
+
+PARTS = {
+    "errors": errors,
+    "states": exact_states,
+    "amplified": amplified,
+    "sides": sides,
+    "endings": endings,
+}
 
 
 def main() -> None:
     """Fill in the page."""
     page = PAGE.read_text("utf-8")
     for name, made in PARTS.items():
-        if name != "sides" and not recorded("long"):
+        if name not in ("sides", "endings") and not recorded("long"):
             continue
         mark, end = f"<!-- {name} -->", f"<!-- end of {name} -->"
         content = made().strip()

@@ -10,12 +10,14 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from cellcrawl import laws as laws
     from cellcrawl import linear as linear
     from cellcrawl import microscopy as microscopy
     from cellcrawl import modes as modes
     from cellcrawl import observables as observables
     from cellcrawl import one_dimensional as one_dimensional
     from cellcrawl import plot as plot
+    from cellcrawl import surroundings as surroundings
     from cellcrawl import sweeps as sweeps
     from cellcrawl.curve import Curve as Curve
     from cellcrawl.errors import CellcrawlError as CellcrawlError
@@ -81,7 +83,17 @@ _HOMES = {
     "write_outlines": "microscopy",
     "write_tracks": "microscopy",
 }
-_MODULES = ("linear", "microscopy", "modes", "observables", "one_dimensional", "plot", "sweeps")
+_MODULES = (
+    "laws",
+    "linear",
+    "microscopy",
+    "modes",
+    "observables",
+    "one_dimensional",
+    "plot",
+    "surroundings",
+    "sweeps",
+)
 
 __all__ = [*_HOMES, *_MODULES, "__version__"]
 

@@ -73,7 +73,10 @@ def file_path(name: str, value: Any) -> Path:
     """Return ``value`` as a path that a file system can hold, or raise `InputError`."""
     if not isinstance(value, (str, os.PathLike)):
         raise InputError(f"{name} must be a path, not {shown(value)}")
-    text = os.fspath(value)
+    try:
+        text = os.fspath(value)
+    except Exception:  # an object that promises a path and has none
+        raise InputError(f"{name} must be a path, not {shown(value)}") from None
     if not isinstance(text, str):
         raise InputError(f"{name} must be a path of text, not {shown(value)}")
     if not text or "\0" in text:
@@ -88,7 +91,10 @@ def file_path(name: str, value: Any) -> Path:
             f"{name} = {shown(text)} is too long: a file's name has up to {_LONGEST_NAME} bytes, "
             f"this one {longest}"
         )
-    return Path(text)
+    try:
+        return Path(text).expanduser()
+    except RuntimeError:
+        raise InputError(f"{name} = {shown(text)}: there is no such home folder") from None
 
 
 def _resolved(function: Any, annotation: Any) -> Any:
@@ -152,9 +158,9 @@ def _any_of(checks: list[Check]) -> Check:
 
 
 def file_path_as_given(name: str, value: Any) -> Any:
-    """Return ``value`` itself if it is a path, or raise `InputError`."""
-    file_path(name, value)
-    return value
+    """Return ``value`` itself if it is a path, with ``~`` spelt out, or raise `InputError`."""
+    path = file_path(name, value)
+    return path if os.fspath(value).startswith("~") else value
 
 
 def _flag(name: str, value: Any) -> bool:

@@ -6,9 +6,15 @@ import difflib
 import errno
 from collections.abc import Iterable
 
+_LONGEST_LIST = 400  # characters of names in a message: matplotlib has 180 colour maps
+
 
 class CellcrawlError(Exception):
     """Anything cellcrawl raises on purpose."""
+
+    def __str__(self) -> str:
+        """Return the message as one line: names of files and values may hold line breaks."""
+        return super().__str__().replace("\n", "\\n").replace("\r", "\\r")
 
 
 class InputError(CellcrawlError, ValueError):
@@ -47,7 +53,13 @@ def nearest_name(name: object, known: Iterable[str]) -> str:
     """
     known = sorted(known)
     close = close_name(name, known)
-    return f"did you mean {close!r}?" if close else f"known names: {', '.join(known)}"
+    if close:
+        return f"did you mean {close!r}?"
+    told = ", ".join(known)
+    if len(told) > _LONGEST_LIST:
+        few = told[:_LONGEST_LIST].rpartition(", ")[0]
+        told = f"{few} and {len(known) - few.count(', ') - 1} more"
+    return f"known names: {told}"
 
 
 def close_name(name: object, known: Iterable[str]) -> str | None:

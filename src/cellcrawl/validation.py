@@ -110,6 +110,16 @@ def table(what: str, value: Any) -> Mapping[str, Any]:
     return value
 
 
+def listed(name: str, value: Any, wanted: str) -> list[Any]:
+    """Return the members of a collection, or raise `InputError` if it cannot be gone through."""
+    try:
+        if not isinstance(value, (str, bytes)):
+            return list(value)
+    except Exception:  # arrays without dimensions, classes, objects that promise and fail
+        pass
+    raise InputError(f"{name} must be {wanted}, not {shown(value)}")
+
+
 def shown(value: Any, longest: int = 60) -> str:
     """Return ``value`` as short text on one line, whatever it is."""
     if isinstance(value, np.generic):

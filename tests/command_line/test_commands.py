@@ -236,6 +236,8 @@ def test_a_folder_without_a_run_or_with_several_is_told(tmp_path, capsys):
         (tmp_path / name).touch()
     assert run(["plot", str(tmp_path)]) == 2
     assert "holds 2 runs: give one of a.nc, b.nc" in capsys.readouterr().err
+    assert run(["info", str(tmp_path / "missing")]) == 2
+    assert "there is no file or folder" in capsys.readouterr().err
 
 
 def test_a_cell_at_rest_has_not_turned_by_nan(capsys):

@@ -7,7 +7,8 @@ import pytest
 import xarray as xr
 
 import cellcrawl as cc
-from cellcrawl.data import FIELDS, TRACK_FIELDS, is_dimensionless, records_with
+from cellcrawl.data import FIELDS, TRACK_FIELDS, records_with
+from cellcrawl.simulation.units import units_of
 from cellcrawl.data.schema import DIMENSIONAL
 from cellcrawl.parameters.scales import KINDS
 from tests.runs import circling, straight
@@ -114,6 +115,12 @@ def test_a_part_of_a_run_is_a_run(door):
     DOORS[door](RUN.assign(mine=("time", np.arange(120))))
 
 
+@pytest.mark.parametrize("name", ["length", "area"])
+def test_differences_are_no_run(name):
+    with pytest.raises(cc.InputError, match=f"'{name}' must be above 0"):
+        records_with(RUN.diff("time"), name)
+
+
 @pytest.mark.parametrize("name", ["time", *FIELDS])
 def test_a_value_that_is_not_finite_is_placed(name):
     run = RUN.assign_coords(time=with_nan("time")["time"]) if name == "time" else with_nan(name)
@@ -124,8 +131,8 @@ def test_a_value_that_is_not_finite_is_placed(name):
 def test_units_are_the_models_or_all_of_one_system():
     si = cc.Scales().dataset(RUN)
     assert records_with(si, *FIELDS) is si
-    assert is_dimensionless(RUN)
-    assert not is_dimensionless(si)
+    assert units_of(RUN).system == "model"
+    assert units_of(si).system == "SI"
     mixed = RUN.assign(x=RUN["x"].assign_attrs(units="m"))
     with pytest.raises(cc.InputError, match=r"'x' is in 'm' but 'time' is in '1/k_off0'"):
         records_with(mixed, *FIELDS)
@@ -148,7 +155,7 @@ def test_si_units_are_those_that_scales_give():
 
 def test_a_start_from_another_size_is_refused_with_and_without_units():
     si = cc.Scales().dataset(straight())
-    with pytest.raises(cc.InputError, match="this one is in SI"):
+    with pytest.raises(cc.InputError, match="this one is in others"):
         cc.FromRun(si).state(cc.Parameters(), 64)
     for name in si.variables:
         si[name].attrs.clear()

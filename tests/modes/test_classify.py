@@ -147,7 +147,7 @@ def test_a_cell_that_spins_within_its_outline_does_not_rotate():
 
 def test_a_run_is_named_as_its_track_with_its_size():
     wide, narrow = circling(0.4, radius=3.0), circling(0.4, radius=0.4)
-    for run, mode in ((wide, "rotational"), (narrow, "other"), (straight(records=40), "gliding")):
+    for run, mode in ((wide, "rotational"), (narrow, "other"), (straight(records=60), "gliding")):
         track = [run[name].values for name in ("time", "centroid_x", "centroid_y")]
         assert cc.classify(run) == cc.classify_track(*track, cell_radius=1.0)
         assert cc.classify(run).mode == mode
@@ -240,12 +240,12 @@ def test_a_spin_that_begins_after_turns_to_the_other_side_is_seen():
 
 @pytest.mark.parametrize("status", ["out_of_range", "unresolved", "not_finite", "step_too_small"])
 def test_a_run_that_a_failure_ended_says_so_and_is_not_sure(status):
-    run = straight(records=90, step=0.1)
+    run = straight(records=90, step=1.0)
     assert cc.classify(run).confidence > 0.99
     found = cc.classify(run.assign_attrs(status=status))
     assert found.mode == "gliding"
     assert found.confidence <= 0.5
-    assert f"the run ended {status} at t = 8.9" in found.summary()
+    assert f"the run ended {status} at t = 89" in found.summary()
     track = (run[name].values for name in ("time", "centroid_x", "centroid_y"))
     assert cc.classify_track(*track, status=status).confidence <= 0.5
 
@@ -275,3 +275,15 @@ def test_named_points_have_the_modes_of_the_paper(point, mode):
     assert cc.modes.combine(map(cc.classify, runs)).majority == mode
     early = [cc.classify(run.sel(time=slice(0.0, 50.0))) for run in runs]
     assert cc.modes.combine(early).majority == mode
+
+
+def test_a_short_run_that_has_not_turned_yet_is_not_sure_to_glide():
+    run = cc.simulate(cc.Parameters(r_on=26, zeta_1=600), 60.0, start=cc.RandomPerturbation(seed=1))
+    assert cc.classify(run).mode == "zigzag"
+    early = cc.classify(run.sel(time=slice(0.0, 8.0)))
+    assert early.mode == "gliding"
+    assert early.confidence <= 0.5
+    assert early.doubt.startswith("it ends at t = 8, and turns may begin up to t = 50")
+    si = cc.classify(cc.Scales().dataset(run.sel(time=slice(0.0, 8.0))))
+    assert si.confidence <= 0.5
+    assert si.doubt.startswith("it ends at t = 80, and turns may begin up to t = 500")

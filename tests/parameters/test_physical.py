@@ -278,3 +278,9 @@ def test_a_length_in_micrometres_is_the_same_cell():
     measured = cell(radius=10 * units.um)
     assert measured == cell(radius=10e-6)
     assert measured.dimensionless() == cc.Parameters()
+
+
+@pytest.mark.parametrize("value", [np, int, "x", None, np.array(["a"])])
+def test_what_is_no_number_has_no_scale(value):
+    with pytest.raises(cc.InputError, match="must be a number"):
+        cc.Scales().to_physical(value, "length")

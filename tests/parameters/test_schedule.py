@@ -143,7 +143,7 @@ def test_edge_rows_before_a_jump_are_the_old_ones():
     conditions = Conditions(P, cc.Schedule({"r_on": [(1, 20), (1, 30)]}))
     assert np.all(conditions.edge(1.0, 5, before=True)[0] == 20)
     assert np.all(conditions.edge(1.0, 5)[0] == 30)
-    assert conditions.edge(1.0, 5).shape == (7, 5)
+    assert conditions.edge(1.0, 5).shape == (8, 5)
 
 
 def test_extremes_hold_both_sides_of_every_jump():

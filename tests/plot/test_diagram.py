@@ -14,6 +14,7 @@ import cellcrawl as cc
 from cellcrawl import sweeps
 from cellcrawl.modes import MODES
 from cellcrawl.plot.mode_symbols import MODE_SYMBOLS
+from cellcrawl.plot.spacing import is_logarithmic
 from cellcrawl.plot.symbols import MEASURE_LABELS
 from cellcrawl.sweeps import worker
 from cellcrawl.sweeps.executors import InProcess
@@ -194,6 +195,23 @@ def test_points_spaced_in_their_logarithm_make_a_logarithmic_axis_with_ticks_at_
         assert ax.get_xticks(minor=True).size == 0
     sides = ax.collections[0].get_coordinates()[0, :, 0]
     np.testing.assert_allclose(sides, [values[0] / np.sqrt(3), *np.multiply(values, np.sqrt(3))])
+
+
+@pytest.mark.parametrize(
+    ("values", "logarithmic"),
+    [
+        ([0.01, 0.03, 0.1], True),
+        ([1, 2, 5, 10], True),
+        ([10, 20, 40], True),
+        ([10, 20, 30], False),
+        ([20, 26, 32, 40], False),
+        ([10, 11.25, 12.5, 15, 20, 40, 60], False),
+        ([0, 1, 10], False),
+        ([1, 10], False),
+    ],
+)
+def test_points_as_people_write_them_are_seen_to_be_logarithmic(values, logarithmic):
+    assert is_logarithmic(np.array(values, dtype=float)) is logarithmic
 
 
 @pytest.mark.parametrize("size", [2.5, 6.0])

@@ -187,6 +187,12 @@ def test_axes_of_a_wrong_kind_are_refused(wrong):
             draw(RUN, ax=wrong)
 
 
+@pytest.mark.parametrize("projection", ["polar", "3d"])
+def test_axes_of_other_coordinates_are_refused(projection):
+    with pytest.raises(cc.InputError, match=f"not {projection} ones"):
+        cc.plot.path(RUN, ax=Figure().add_subplot(projection=projection))
+
+
 def test_pictures_show_themselves_in_a_notebook():
     for drawn in (cc.plot.path(RUN), cc.plot.time_series(RUN)):
         assert drawn._repr_png_()[:8] == b"\x89PNG\r\n\x1a\n"

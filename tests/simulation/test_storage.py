@@ -155,6 +155,11 @@ def test_an_existing_run_is_not_overwritten_unless_asked(tmp_path):
 def test_damaged_foreign_and_newer_files_are_named(tmp_path):
     damaged = tmp_path / "damaged.nc"
     damaged.write_bytes(b"not a netCDF file")
+    cut, folder, empty = (tmp_path / name for name in ("cut.nc", "folder.nc", "empty.zarr"))
+    folder.mkdir()
+    empty.mkdir()
+    short(0.1, output=tmp_path / "whole.nc").close()
+    cut.write_bytes((tmp_path / "whole.nc").read_bytes()[:5000])
     foreign = tmp_path / "foreign.nc"
     xr.Dataset({"a": ("b", [1.0])}).to_netcdf(foreign, engine="h5netcdf")
     newer = tmp_path / "newer.nc"
@@ -162,7 +167,10 @@ def test_damaged_foreign_and_newer_files_are_named(tmp_path):
     run.attrs["schema_version"] = 99
     run.to_netcdf(newer, engine="h5netcdf")
     for path, kind, says in [
-        (damaged, cc.StorageError, "cannot read"),
+        (damaged, cc.StorageError, "is damaged: it is no netCDF-4 file; restore it"),
+        (cut, cc.StorageError, "is damaged: it is cut short"),
+        (folder, cc.StorageError, "is damaged: it is no netCDF-4 file"),
+        (empty, cc.StorageError, "is damaged: it is no Zarr store"),
         (foreign, cc.InputError, "not a cellcrawl run"),
         (newer, cc.StorageError, "newer cellcrawl"),
         (tmp_path / "absent.nc", cc.InputError, "no run"),

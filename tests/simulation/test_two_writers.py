@@ -161,3 +161,26 @@ def test_a_file_system_without_locks_is_told_of(tmp_path, monkeypatch):
         locked(tmp_path / "lock", tmp_path),
     ):
         pass
+
+
+def test_a_link_to_a_run_is_that_run_with_its_lock(tmp_path):
+    run, link = tmp_path / "run.nc", tmp_path / "latest.nc"
+    p = cc.Parameters()
+    cc.simulate(p, 0.1, nodes=64, output=run).close()
+    link.symlink_to(run)
+    cc.resume(link, t_end=0.2).close()
+    assert link.is_symlink()
+    assert cc.open_run(run).attrs["end_time"] == 0.2
+    with locked(tmp_path / "run.nc.lock", run), pytest.raises(cc.InputError, match="at work on"):
+        cc.resume(link, t_end=0.3)
+
+
+def test_a_tilde_is_the_home_folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("USERPROFILE", str(tmp_path))
+    cc.simulate(cc.Parameters(), 0.1, nodes=64, output="~/run.nc").close()
+    assert (tmp_path / "run.nc").is_file()
+    assert cc.open_run("~/run.nc").attrs["status"] == "completed"
+    assert cc.movie(cc.open_run("~/run.nc"), "~/run.gif", size=(64, 64)).parent == tmp_path
+    with pytest.raises(cc.InputError, match="no such home folder"):
+        cc.open_run("~nobody-of-that-name/run.nc")

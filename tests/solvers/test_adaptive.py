@@ -245,8 +245,25 @@ def test_too_few_nodes_are_named() -> None:
     breakdown = made.advance(20.0)
     assert breakdown is not None
     assert breakdown.status == "unresolved"
-    assert "max_nodes" in breakdown.message
+    assert "raise max_nodes or rtol" in breakdown.message
     assert np.all(np.isfinite(made.frame(made.time).off_rate))
+
+
+def test_a_bend_that_leaves_the_model_is_the_cell_and_not_the_grid() -> None:
+    p = cc.Parameters(r_on=16, zeta_1=600)
+    start = cc.RandomPerturbation(seed=27)
+    loose, tight = (cc.simulate(p, 3.0, start=start, nodes=2048, rtol=t) for t in (1e-4, 1e-7))
+    assert loose.attrs["status"] == "out_of_range"
+    assert tight.attrs["status"] == "unresolved"  # the bend is too sharp for 4096 nodes at 1e-7
+    assert tight.attrs["status_message"].endswith("raise rtol")
+    both = tight["time"].values[:-1]
+    sharpest = [run["curvature"].sel(time=both).min("node").values for run in (loose, tight)]
+    folded = sharpest[1] < -2.0
+    assert sharpest[1].min() < -10.0
+    np.testing.assert_allclose(sharpest[0][folded], sharpest[1][folded], rtol=0.05)
+    # nothing balances the forces beyond this curvature, whatever the bound fraction
+    limit = -(1.0 + p.sigma_c / float(loose["tension"][-1])) / p.h
+    assert 1.15 * limit < float(loose["curvature"].min()) < 0.8 * limit
 
 
 def test_leaving_the_model_is_named_and_keeps_the_last_state() -> None:

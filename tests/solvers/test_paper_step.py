@@ -27,11 +27,11 @@ def diffuse(nodes, dt, time, k, diffusivity, length=TURN, r=0.0, r_on=0.0, slide
     for _ in range(round(time / dt)):
         crank_nicolson(
             n,
-            r * full,
+            r_on - (r_on + r) * n,
+            -(r_on + r) * full,
             slide * full,
             length / nodes,
             dt,
-            r_on * full,
             diffusivity * full,
             np.empty((6, nodes)),
         )

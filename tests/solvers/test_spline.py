@@ -67,8 +67,8 @@ def test_without_its_transport_term_the_theta_l_frame_disagrees(
     assert disagreement(spline, with_term) < 1.5e-3
 
     @numba.njit  # type: ignore[misc]
-    def held(n, r, tangential, spacing, dt, r_on, diffusivity, work):  # type: ignore[no-untyped-def]
-        step(n, r, np.zeros_like(tangential), spacing, dt, r_on, diffusivity, work)
+    def held(n, bind, loss, tangential, spacing, dt, diffusivity, work):  # type: ignore[no-untyped-def]
+        step(n, bind, loss, np.zeros_like(tangential), spacing, dt, diffusivity, work)
 
     step, advance = paper_step.crank_nicolson, paper_step.advance.py_func
     names = {**advance.__globals__, "crank_nicolson": held}

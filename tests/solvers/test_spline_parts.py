@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import cellcrawl as cc
+from cellcrawl.laws.law import PAPER
 from cellcrawl.parameters import Conditions
 from cellcrawl.solvers.spline import balance, outline, periodic
 from cellcrawl.solvers.spline.frames import measured
@@ -162,9 +163,11 @@ def test_tension_solves_its_own_equation_however_stiff(shape_modes, bound_modes,
     fields = smooth_cell(64, shape_modes, bound_modes)
     shape = measured(fields)
     edge = Conditions(cc.Parameters()).edge(0.0, 64)
-    code, _, sigma = balance.solve_tension(fields, 600.0, 900.0, weight, shape, edge)
+    code, _, sigma = balance.solve_tension(
+        PAPER.compiled, fields, 600.0, 900.0, weight, shape, edge
+    )
     assert code == balance.BALANCED
-    swept = balance.rates(fields, shape, edge, np.empty((3, 64)))
+    swept = balance.rates(PAPER.compiled, fields, sigma, shape, edge, np.empty((3, 64)))
     assert sigma == pytest.approx(900.0 + weight * swept, rel=1e-9)
     n, r = fields[N], np.exp(fields[LOG_R])
     pull = 100.0 + sigma * (1.0 + 0.01 * shape[outline.KAPPA])

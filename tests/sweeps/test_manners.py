@@ -7,6 +7,7 @@ import multiprocessing
 import os
 import subprocess
 import sys
+import types
 
 import pytest
 
@@ -122,3 +123,14 @@ except cc.InputError as error:
 def test_what_is_no_address_is_not_waited_for(address, tmp_path):
     with pytest.raises(cc.InputError, match="address of a Dask scheduler"):
         cc.sweep({"r_on": [20]}, tmp_path / "out", address, **QUICK)
+
+
+def test_a_start_of_a_function_or_of_a_module_without_a_file_is_refused_too(tmp_path):
+    class Inside(cc.RandomPerturbation):
+        pass
+
+    nowhere = types.ModuleType("nowhere")
+    exec("import cellcrawl\nclass Start(cellcrawl.RandomPerturbation): pass", vars(nowhere))
+    for start in (Inside(), nowhere.Start()):
+        with pytest.raises(cc.InputError, match="in a file of its own"):
+            cc.sweep({"r_on": [20]}, tmp_path / "out", start=start, t_end=0.1)

@@ -18,8 +18,8 @@ from cellcrawl._compile import inlined_kernel, kernel
 from cellcrawl.curve import fourier
 from cellcrawl.parameters import Conditions
 from cellcrawl.physics.exponential import exponential
-from cellcrawl.physics.force_balance import SOLVED, halley_step, solve_off_rate
 from cellcrawl.physics.laws import binding_rate, driving_force, edge_velocity
+from cellcrawl.physics.slip_bond import SOLVED, halley_step, solve_off_rate
 from cellcrawl.starts import CellState
 
 SCALARS: Final = 5  # length, tension, area, position of node 0: the last entries of a state

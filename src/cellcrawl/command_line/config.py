@@ -12,7 +12,7 @@ from cellcrawl.starts import Start
 from cellcrawl.validation import known_names, table
 
 _TABLES = ("parameters", "schedule", "start", "run")
-_RUN = ("t_end", "save_every", "solver", "nodes", "rtol", "dt")
+_RUN = ("t_end", "save_every", "solver", "nodes", "laws", "surroundings", "rtol", "dt")
 
 
 class Configuration(NamedTuple):

@@ -24,6 +24,8 @@ def run_in(path: Path) -> Path:
         For a folder without a run, or with several of which none is ``run.nc``.
     """
     file_path("FILE", path)
+    if not path.suffix and not path.exists():
+        raise InputError(f"there is no file or folder {path}")
     if not path.is_dir() or path.suffix in (*_SUFFIXES, ".part"):
         return path
     names = {

@@ -34,6 +34,7 @@ _FITS_IN_MEMORY = 500_000_000  # bytes
 @click.option("--seed", type=int, metavar="NUMBER", help="Seed of the random start.  [default: 1]")
 @click.option("--solver", metavar="NAME", help="Numerical scheme.")
 @click.option("--nodes", type=int, metavar="NUMBER", help="Nodes on the edge.")
+@click.option("--laws", metavar="NAME", help="A law set: a shipped one, or module:Class of yours.")
 @click.option(
     "--rtol",
     type=float,
@@ -64,6 +65,7 @@ def simulate(
     seed: int | None,
     solver: str | None,
     nodes: int | None,
+    laws: str | None,
     rtol: float | None,
     dt: float | None,
     config: Path | None,
@@ -96,6 +98,8 @@ def simulate(
       seed = 4
       [run]
       t_end = 60
+      laws = { kind = "cellcrawl.laws:Stiffness", values = { chi = 0.6 } }
+      surroundings = [ { kind = "stripes", period = 1.5 } ]
 
     Ctrl-C keeps what was computed; `cellcrawl resume` goes on from there.
     """
@@ -108,6 +112,7 @@ def simulate(
         "save_every": save_every,
         "solver": solver,
         "nodes": nodes,
+        "laws": laws,
         "rtol": rtol,
         "dt": dt,
     }

@@ -143,6 +143,7 @@ def from_polygon(xy: Any, nodes: int, smoothing: float = 0.01) -> Curve:
     width = real_number("smoothing", smoothing, 0.001, 0.1)
     corners = np.append(vertices, vertices[:1], axis=0)
     at = np.append(0.0, np.cumsum(np.hypot(*np.diff(corners, axis=0).T)))
+    whole_number("nodes", nodes, FEWEST_NODES, MOST_NODES)
     samples = max(8 * nodes, 4096)
     along = at[-1] * np.arange(samples) / samples
     path = np.interp(along, at, corners[:, 0]) + 1j * np.interp(along, at, corners[:, 1])

@@ -9,7 +9,6 @@ from cellcrawl.data.runs import (
     check_run,
     checked_times,
     edge_field,
-    is_dimensionless,
     records_with,
     systems_of,
 )
@@ -44,7 +43,6 @@ __all__ = [
     "decode_attribute",
     "edge_field",
     "encode_attributes",
-    "is_dimensionless",
     "records_with",
     "systems_of",
 ]

@@ -17,6 +17,8 @@ _SLICE_RECORDS: Final = 512  # looked at together: a run on disk need not fit in
 _WIDEST_GAP: Final = 2.0  # spacings between neighbouring nodes ...
 _CLOSURE: Final = 0.02  # ... and of the length: the gap the paper's scheme may leave
 
+_ABOVE_ZERO: Final = ("length", "area")
+
 SYSTEMS: Final = ("model", "SI", "micrometres")
 """Systems of units that a run can be in; pictures show SI in micrometres."""
 
@@ -55,6 +57,8 @@ def records_with(dataset: Any, *names: str, at_least: int = 1) -> xr.Dataset:
         systems_of(dataset, ("time", *names))
     for name in names:
         _check_finite(dataset.variables[name], name)
+        if name in _ABOVE_ZERO and (dataset.variables[name].values <= 0.0).any():
+            raise InputError(f"{name!r} must be above 0, as in a run: are these differences?")
     if any(name in EDGE_FIELDS for name in names):
         _check_edge(dataset)
     return dataset
@@ -91,11 +95,6 @@ def checked_times(name: str, values: Any) -> np.ndarray:
             "sort the records and drop repeated times"
         )
     return times
-
-
-def is_dimensionless(dataset: xr.Dataset) -> bool:
-    """Whether a run is in the model's units, by what its variables and attributes say."""
-    return "scales" not in dataset.attrs and "model" in systems_of(dataset, ("time", *FIELDS))
 
 
 def _check_variable(dataset: xr.Dataset, name: str) -> None:

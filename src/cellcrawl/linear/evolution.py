@@ -49,7 +49,7 @@ def evolution(
     """
     p, state = parameters, base_state(parameters)
     k = whole_number("k", k, 1)
-    t = np.atleast_1d(real_array("times", times, None))
+    t = real_array("times", np.atleast_1d(real_array("times", times, None)), (None,))
     a, c = state.a, state.c
     q = p.r_on + p.r_p + p.D * k**2
     # the off-rate's amplitude over those of radius and bound fraction

@@ -9,6 +9,10 @@ from typing import Any
 import numpy as np
 
 from cellcrawl.arguments import checked
+from cellcrawl.errors import InputError
+from cellcrawl.laws import as_law
+from cellcrawl.laws.law import PAPER
+from cellcrawl.linear.any_law import law_growth_rates
 from cellcrawl.linear.characteristic import (
     characteristic,
     checked_shapes,
@@ -33,7 +37,10 @@ class BaseState:
 
 @checked
 def base_state(parameters: Parameters) -> BaseState:
-    """Return the resting circle of ``parameters``."""
+    """Return the resting circle of ``parameters`` under the paper's laws.
+
+    That of other laws is `cellcrawl.laws.rest_state`.
+    """
     p = parameters
     log_r = math.log(p.r_p)
     adhesion = p.zeta_1 * p.n_bar
@@ -48,7 +55,7 @@ def base_state(parameters: Parameters) -> BaseState:
 
 
 @checked
-def growth_rates(parameters: Parameters, k: Any, **values: Any) -> np.ndarray:
+def growth_rates(parameters: Parameters, k: Any, *, laws: Any = None, **values: Any) -> np.ndarray:
     """Growth rates of wavenumber ``k``, both roots of the characteristic equation.
 
     Parameters
@@ -57,6 +64,9 @@ def growth_rates(parameters: Parameters, k: Any, **values: Any) -> np.ndarray:
         The cell; its ``elasticity`` is the tension law of the breathing mode, ``k = 0``.
     k : int or array
         Wavenumbers. Any real number is taken, though only whole ones fit a circle.
+    laws : Law or str, optional
+        Another law set than the paper's, by itself or by name; parameters are then those of the
+        cell alone.
     **values : float or array
         Parameters by name that replace those of the cell. They broadcast with each other and with
         ``k``: ``growth_rates(p, 1, r_on=r_on[:, None], zeta_1=zeta_1)`` is a map.
@@ -74,6 +84,11 @@ def growth_rates(parameters: Parameters, k: Any, **values: Any) -> np.ndarray:
         or shapes that do not broadcast.
     """
     k = checked_wavenumbers(k)
+    law = PAPER if laws is None else as_law(laws)
+    if law != PAPER:
+        if values:
+            raise InputError("under other laws give one cell's parameters, not values by name")
+        return law_growth_rates(parameters, k, law)
     given = checked_values("growth_rates", values)
     checked_shapes(k, given)
     quadratic = characteristic(parameters, k, given)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
@@ -141,13 +142,13 @@ def observe(
     # The grid of a camera knows nothing of the cell: it lies anywhere between two pixels.
     aside = _MARGIN + random.random(2)
     left, top = float(x.min()) - aside[0] * pixel, float(y.max()) + aside[1] * pixel
-    columns = int(np.ceil((x.max() - left) / pixel)) + _MARGIN
-    rows = int(np.ceil((top - y.min()) / pixel)) + _MARGIN
-    if count * rows * columns > _LARGEST:
+    wide, high = ((end - begin) / pixel for begin, end in ((left, x.max()), (y.min(), top)))
+    if not count * (high + _MARGIN) * (wide + _MARGIN) <= _LARGEST:
         raise InputError(
-            f"{count} frames of {rows} x {columns} pixels are too many: give a larger pixel or "
-            "frame"
+            f"{count} frames of {high:.0f} x {wide:.0f} pixels are too many: give a larger pixel "
+            "or frame"
         )
+    columns, rows = (math.ceil(size) + _MARGIN for size in (wide, high))
     labels = np.zeros((count, rows, columns), np.uint8)
     for number in range(count):
         shape = np.column_stack([(x[number] - left) / pixel, (top - y[number]) / pixel])

@@ -31,7 +31,8 @@ _LATER_STARTS = (0.0, 1 / 9, 2 / 9, 3 / 9)
 _SHORT, _LONG = 24, 60  # records up to which none of these, and only the last, is tried
 _PREFER_EARLY = 0.3  # a start that leaves out the part p must fit better by this times p
 _FEW_TURNS = 3  # a track that has turned less often, and less than once round, may be any mode
-_CUT_SHORT = 0.5  # the confidence that a run which failed can have
+_CUT_SHORT = 0.5  # the confidence that a run which failed, or is too short, can have
+_UNEVENTFUL = ("gliding", "stationary")  # modes of cells that have not turned, or not set off, yet
 _FAILURES = tuple(set(STATUSES) - {"completed", "fragmented", "interrupted", "running"})
 
 
@@ -62,7 +63,8 @@ def classify(dataset: xr.Dataset, *, use_size: bool = True) -> Classification:
     -----
     The modes are those of a cell left to itself: a schedule that changes parameters on the way
     makes a track with several modes, which is "other". A run of less than about 50 may not have
-    come to its mode. A run that a failure ended (outside the model, or unresolved) is named by what
+    come to its mode: one that has not turned or not set off by then has a confidence of at most
+    0.5. A run that a failure ended (outside the model, or unresolved) is named by what
     there is, says so in ``doubt``, and its confidence is at most 0.5.
     """
     torn = isinstance(dataset, xr.Dataset) and dataset.attrs.get("status") == "fragmented"
@@ -73,7 +75,7 @@ def classify(dataset: xr.Dataset, *, use_size: bool = True) -> Classification:
     track = track_of_checked(run)
     radius = math.sqrt(float(np.median(run.variables["area"].values)) / math.pi)
     found = _classify(track, radius if use_size else None)
-    return _ended(found, str(run.attrs.get("status", "completed")), float(track.t[-1]))
+    return _ended(_early(found, run), str(run.attrs.get("status", "completed")), float(track.t[-1]))
 
 
 @checked
@@ -122,7 +124,7 @@ def classify_track(
 @checked
 def is_long_enough(dataset: xr.Dataset) -> bool:
     """Whether a run of the model lasts `SHORTEST_RUN` and has the records to show its mode."""
-    times, one = dataset["time"].values, units_of(dataset).one("time")
+    times, one = records_with(dataset)["time"].values, units_of(dataset).one("time")
     long = float(times[-1] - times[0]) >= SHORTEST_RUN * (one if math.isfinite(one) else 0.0)
     return times.size >= FEWEST_RECORDS and long
 
@@ -209,6 +211,17 @@ def _ended(found: Classification, status: str, time: float) -> Classification:
     words = f"the run ended {status} at t = {time:.4g}"
     doubt = "; ".join(part for part in (words, found.doubt) if part)
     return replace(found, confidence=min(found.confidence, _CUT_SHORT), doubt=doubt)
+
+
+def _early(found: Classification, run: xr.Dataset) -> Classification:
+    """Return the result with what it is worth where nothing has happened, and still may."""
+    end, begins = float(run["time"][-1]), SHORTEST_RUN * units_of(run).one("time")
+    if found.mode not in _UNEVENTFUL or not end < begins:
+        return found
+    words = f"it ends at t = {end:.4g}, and turns may begin up to t = {begins:g}"
+    return replace(
+        found, confidence=min(found.confidence, _CUT_SHORT), doubt=_joined(words, found.doubt)
+    )
 
 
 def _score(result: Classification, later: float) -> float:

@@ -11,11 +11,13 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
 from matplotlib.patches import Polygon
 from matplotlib.text import Text
 
 from cellcrawl.plot.colouring import Colouring, colouring
 from cellcrawl.plot.edge import length_text, rim, round_length, segments
+from cellcrawl.plot.ground import draw_ground
 from cellcrawl.plot.labels import time_text
 from cellcrawl.plot.scales import Limits, extend_for, ticks_for
 from cellcrawl.plot.style import BODY, GUIDE, INK, STYLE, TRACK, house_style, on
@@ -85,6 +87,7 @@ class Scene:
         strip.set_axis_off()
         view = np.array([size[0], size[1] * (1.0 - _STRIP)])
         self._frame(view)
+        self._ground = self._add_ground()
         guide = on(self._ax, GUIDE)
         self._grid = LineCollection([], colors=guide, alpha=_FAINT, linewidths=0.6, zorder=0)
         self._line = self._ax.plot([], [], color=TRACK, linewidth=1.2, zorder=1)[0]
@@ -110,6 +113,7 @@ class Scene:
         pieces = len(range(0, self._points.shape[1], self._stride))
         self._edge.set_segments(list(np.zeros((pieces, 3, 2))))
         self._moving = [
+            *([self._ground] if self._ground is not None and self._follows else []),
             self._grid,
             self._body,
             self._line,
@@ -139,6 +143,18 @@ class Scene:
             self._reach = float(np.max(0.5 * (high - low) / shape)) * 1.15 * shape
         self._ax.set_xlim(self._middle[0] - self._reach[0], self._middle[0] + self._reach[0])
         self._ax.set_ylim(self._middle[1] - self._reach[1], self._middle[1] + self._reach[1])
+
+    def _add_ground(self) -> AxesImage | None:
+        """Draw what surrounds the cell, over all the way that it goes."""
+        camera = self._track if self._follows else np.zeros((1, 2))
+        low, high = camera.min(axis=0) - self._reach, camera.max(axis=0) + self._reach
+        if not self._follows:
+            low, high = low + self._middle, high + self._middle
+        pixels = round(320.0 * float(np.max(high - low) / (2.0 * self._reach.max())))
+        ground = draw_ground(self._ax, self._run, low, high, min(pixels, 2000))
+        if ground is not None:
+            self._extent = np.array(ground.get_extent())
+        return ground
 
     def _thinning(self, width: float) -> int:
         """Return of how many nodes one is drawn."""
@@ -228,6 +244,9 @@ class Scene:
         past = self._track[: record + 1] - camera
         self._line.set_data(past[:, 0], past[:, 1])
         self._dot.set_data(past[-1:, 0], past[-1:, 1])
+        if self._follows and self._ground is not None:
+            shifted = self._extent - np.repeat(camera, 2)
+            self._ground.set_extent(tuple(shifted.tolist()))
         if self._follows:
             self._grid.set_segments(self._grid_lines(camera))
         self._clock.set_text(f"{self._times[frame]:.{self._digits}f}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.microscopy.outlines import Outline, Outlines
 from cellcrawl.microscopy.polygons import area_of, centroid_of, equally_spaced
-from cellcrawl.validation import real_array, real_number, whole_number
+from cellcrawl.validation import listed, real_array, real_number, whole_number
 
 NODES = 128
 _FINE = 512
@@ -118,9 +117,7 @@ def _shapes(outlines: Any) -> tuple[list[np.ndarray], np.ndarray, dict[str, Any]
         polygons = [outline.xy for outline in outlines]
         times = np.array([outline.t for outline in outlines])
     else:
-        if not isinstance(outlines, Iterable) or isinstance(outlines, (str, bytes)):
-            raise InputError("outlines must be a sequence of arrays of shape (points, 2)")
-        polygons = list(outlines)
+        polygons = listed("outlines", outlines, "a sequence of arrays of shape (points, 2)")
         times = np.arange(len(polygons), dtype=float)
     if not polygons:
         raise InputError("there are no outlines")

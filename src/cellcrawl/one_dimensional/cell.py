@@ -10,9 +10,10 @@ import numpy as np
 from cellcrawl._compile import kernel
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
-from cellcrawl.parameters import EDGE_ROWS, Parameters
-from cellcrawl.physics.force_balance import balance
-from cellcrawl.solvers.base import pointwise_velocity_and_friction
+from cellcrawl.laws.law import PAPER
+from cellcrawl.parameters import Conditions, Parameters
+from cellcrawl.physics.slip_bond import balance
+from cellcrawl.solvers.base import pointwise
 from cellcrawl.validation import real_number, shown
 
 _STIFFEST = 1e9
@@ -88,8 +89,10 @@ def velocity_and_friction(
     parameters: Parameters, off_rate: np.ndarray, bound_fraction: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the outward velocity and the friction of edges, arrays of any one shape."""
-    rows = np.array([getattr(parameters, name) for name in EDGE_ROWS])
-    return pointwise_velocity_and_friction(off_rate, bound_fraction, rows)
+    edge = Conditions(parameters).edge(0.0, 1)[:, 0]
+    y = np.log(off_rate)
+    _, velocity, friction = pointwise(PAPER, y, bound_fraction, 0.0, 0.0, edge)
+    return velocity, friction
 
 
 def checked_cell(parameters: object, anchoring: object = FREE) -> None:

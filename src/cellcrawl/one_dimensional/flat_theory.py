@@ -15,8 +15,8 @@ from cellcrawl.linear.characteristic import characteristic, checked_wavenumbers
 from cellcrawl.linear.quadratic import ordered_roots
 from cellcrawl.one_dimensional.cell import checked_cell
 from cellcrawl.parameters import Parameters
-from cellcrawl.physics.force_balance import balance
 from cellcrawl.physics.laws import binding_rate
+from cellcrawl.physics.slip_bond import balance
 from cellcrawl.validation import one_of, real_number
 
 TENSION_LAWS: Final = ("fixed", "elastic")

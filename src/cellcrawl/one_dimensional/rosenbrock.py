@@ -16,7 +16,6 @@ import numpy as np
 
 from cellcrawl._compile import kernel
 from cellcrawl.physics.exponential import exponential
-from cellcrawl.physics.force_balance import ROUND_OFF, balance, halley_step
 from cellcrawl.physics.laws import (
     binding_rate,
     driving_force,
@@ -24,6 +23,7 @@ from cellcrawl.physics.laws import (
     friction,
     friction_slope,
 )
+from cellcrawl.physics.slip_bond import ROUND_OFF, balance, halley_step
 
 # entries of a state
 N_FRONT, N_REAR, TENSION, IMBALANCE, X_FRONT, X_REAR = range(6)

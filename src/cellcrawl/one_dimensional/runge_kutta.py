@@ -14,8 +14,8 @@ import numpy as np
 
 from cellcrawl._compile import kernel
 from cellcrawl.physics.exponential import exponential
-from cellcrawl.physics.force_balance import SOLVED, solve_off_rate
 from cellcrawl.physics.laws import binding_rate, edge_velocity
+from cellcrawl.physics.slip_bond import SOLVED, solve_off_rate
 
 # what `run` returns beside the number of records made
 REACHED, NO_ROOT, STEP_TOO_SMALL, TOO_MANY_STEPS = range(4)

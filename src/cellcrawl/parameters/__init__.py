@@ -1,6 +1,6 @@
 """What a cell is made of: dimensionless parameters, physical ones, and how they change in time."""
 
-from cellcrawl.parameters.conditions import EDGE_ROWS, Conditions
+from cellcrawl.parameters.conditions import Conditions
 from cellcrawl.parameters.dimensionless import DESCRIPTIONS, ELASTICITIES, Parameters
 from cellcrawl.parameters.physical import QUANTITIES, PhysicalParameters
 from cellcrawl.parameters.scales import KINDS, Scales
@@ -10,7 +10,6 @@ from cellcrawl.parameters.temperature import ActivationEnergies
 __all__ = [
     "CONSTANT",
     "DESCRIPTIONS",
-    "EDGE_ROWS",
     "ELASTICITIES",
     "KINDS",
     "QUANTITIES",

@@ -10,22 +10,30 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
-from typing import Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cellcrawl.laws.law import LOCAL, PAPER, Law
 from cellcrawl.parameters.dimensionless import Parameters
 from cellcrawl.parameters.schedule import CONSTANT, Schedule
 
-EDGE_ROWS: Final = ("r_on", "zeta_1", "D", "epsilon", "h", "sigma_c", "v_p")
+if TYPE_CHECKING:
+    from cellcrawl.surroundings.base import CompiledSurroundings, Surroundings
 
 
 @dataclass(frozen=True)
 class Conditions:
-    """Parameters of one run with their schedule; immutable."""
+    """Parameters of one run with their schedule, and the laws they belong to; immutable."""
 
     parameters: Parameters
     schedule: Schedule = CONSTANT
+    laws: Law = PAPER
+    surroundings: Surroundings | None = None
+
+    def around(self) -> CompiledSurroundings | None:
+        """Return the surroundings for kernels, None if there are none."""
+        return None if self.surroundings is None else self.surroundings.compiled(self.laws)
 
     @property
     def uniform(self) -> bool:
@@ -37,13 +45,13 @@ class Conditions:
         return self._at(time)
 
     def edge(self, time: float, nodes: int, *, before: bool = False) -> np.ndarray:
-        """Return the local parameters at equal arclengths, shape (len(EDGE_ROWS), nodes).
+        """Return the local parameters at equal arclengths, shape (rows of the law, nodes).
 
-        The first is at the edge's first node.
+        The first node is the edge's.
 
         With ``before``, a jump at ``time`` has not happened yet.
         """
-        return np.repeat(_edge_column(self._at(time, before=before)), nodes, axis=1)
+        return np.repeat(_edge_column(self._at(time, before=before), self.laws), nodes, axis=1)
 
     def tension_rate(self, time: float, *, before: bool = False) -> float:
         """Return ``G`` of the tension law from ``time`` on, or up to it with ``before``."""
@@ -71,5 +79,7 @@ class Conditions:
 
 
 @functools.lru_cache(maxsize=16)
-def _edge_column(parameters: Parameters) -> np.ndarray:
-    return np.array([[getattr(parameters, name)] for name in EDGE_ROWS])
+def _edge_column(parameters: Parameters, laws: Law) -> np.ndarray:
+    of_cell = {name: getattr(parameters, name) for name in LOCAL if name != "pressure"}
+    values = {**of_cell, "pressure": 0.0, **laws.values}
+    return np.array([[values[name]] for name in laws.rows])

@@ -218,8 +218,9 @@ def _kind(name: str) -> Kind:
 def _numbers(kind: str, value: Any) -> Any:
     """Return ``value`` as something that can be scaled: a float, an array or a DataArray."""
     try:
-        numbers = value if hasattr(value, "dtype") else np.asarray(value)
-    except (TypeError, ValueError, OverflowError):
+        known = isinstance(getattr(value, "dtype", None), np.dtype)
+        numbers = value if known else np.asarray(value)
+    except Exception:  # whatever an object that is no number raises
         numbers = np.asarray(None)
     if numbers.dtype.kind not in "iuf":
         raise InputError(f"a {kind} must be a number or an array of numbers")

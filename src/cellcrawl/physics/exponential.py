@@ -35,3 +35,17 @@ def exponential(x: float) -> float:
     p = p * f + 1.0
     bits = (np.float64(shifted).view(np.int64) + 1023) << 52
     return p * np.int64(bits).view(np.float64)
+
+
+@inlined_kernel
+def growth(x: float) -> float:
+    """``exp(x)`` to rounding for |x| < 0.12."""
+    p = 1.0 / 40320.0
+    p = p * x + 1.0 / 5040.0
+    p = p * x + 1.0 / 720.0
+    p = p * x + 1.0 / 120.0
+    p = p * x + 1.0 / 24.0
+    p = p * x + 1.0 / 6.0
+    p = p * x + 0.5
+    p = p * x + 1.0
+    return p * x + 1.0

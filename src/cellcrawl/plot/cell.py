@@ -24,6 +24,7 @@ from cellcrawl.plot.edge import (
     round_length,
     scale_bar,
 )
+from cellcrawl.plot.ground import draw_ground
 from cellcrawl.plot.inputs import drawable, record_at, records_at
 from cellcrawl.plot.labels import position_label, time_text
 from cellcrawl.plot.scales import Limits
@@ -99,6 +100,7 @@ def cell(
         axes.set_xlim(middle[0] - reach, middle[0] + reach)
         axes.set_ylim(middle[1] - reach, middle[1] + reach)
         axes.set_aspect("equal")
+        draw_ground(axes, run, middle - reach, middle + reach)
         axes.set(xlabel=position_label(run, "x"), ylabel=position_label(run, "y"))
         axes.set_title(_time_label(run, record))
         if colorbar:
@@ -195,6 +197,7 @@ def _draw_all(
         edge = draw_cell(panel, outline, values, colours, linewidth=1.8)
         middle = 0.5 * (outline.min(axis=0) + outline.max(axis=0))
         frame(panel, middle - reach, middle + reach)
+        draw_ground(panel, run, middle - reach, middle + reach)
         if np.all(np.abs(start - middle) < reach):
             panel.plot(*start, "o", color=on(panel, INK), markersize=2.0, zorder=4)
         _draw_centroid(panel, run, record, velocity)

@@ -16,6 +16,7 @@ from cellcrawl.observables import speed
 from cellcrawl.observables.inputs import edge_field
 from cellcrawl.plot.colouring import Colouring, colour_bar, colouring
 from cellcrawl.plot.edge import draw_cell, edge_points, frame, scale_bar
+from cellcrawl.plot.ground import draw_ground
 from cellcrawl.plot.inputs import drawable, record_at
 from cellcrawl.plot.labels import length_unit, time_text
 from cellcrawl.plot.scales import Limits
@@ -86,6 +87,7 @@ def path(
     height = float(np.clip(COLUMN * 0.85 * tall / wide + 0.25, 1.4, 1.5 * COLUMN))
     with axes_or_new(ax, COLUMN, height, equal=True) as axes:
         frame(axes, low, high, fill=ax is not None)
+        draw_ground(axes, run, low, high)
         edge = _draw(axes, run, records, values, colours, times)
         scale_bar(axes, run)
         _write_caption(axes, run, step)
@@ -143,6 +145,7 @@ def paths(
             low, high = boxes[title]
             spare = np.array([0.0, 0.5 * (tall - (high - low)[1])])
             frame(panel, low - spare, high + spare)
+            draw_ground(panel, run, low - spare, high + spare)
             edge = _draw(panel, run, records[title], values[title], colours, False)
             _write_caption(panel, run, steps[title])
             panel.set_title(title)

@@ -8,16 +8,19 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-_EVEN: Final = 0.02  # relative: spaces that differ less are one
+_MORE_EVEN: Final = 0.5  # spaces of logarithms are this part as uneven as those of the points ...
+_EVEN: Final = 1.6  # ... and the widest is so many times the narrowest: 1, 2, 5, 10 is even
 _MOST_TICKS: Final = {"x": 12, "y": 12}  # so many points have a tick each
 
 
 def is_logarithmic(values: np.ndarray) -> bool:
-    """Whether sorted points are evenly spaced in their logarithm and not in themselves."""
+    """Whether sorted points are more evenly spaced in their logarithm than in themselves."""
     if values.size < 3 or values[0] <= 0.0:
         return False
-    ratios, steps = np.diff(np.log(values)), np.diff(values)
-    return bool(np.ptp(ratios) <= _EVEN * ratios.mean() and np.ptp(steps) > _EVEN * steps.mean())
+    in_logarithm, in_themselves = (
+        float(spaces.max() / spaces.min()) for spaces in (np.diff(np.log(values)), np.diff(values))
+    )
+    return in_logarithm <= min(_EVEN, 1.0 + _MORE_EVEN * (in_themselves - 1.0))
 
 
 def edges(values: np.ndarray) -> np.ndarray:

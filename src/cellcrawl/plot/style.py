@@ -243,6 +243,8 @@ def one_axes(ax: Any, name: str = "ax") -> Axes:
     """Return ``ax`` if it is matplotlib's Axes, or raise `InputError`."""
     if not isinstance(ax, Axes):
         raise InputError(f"{name} must be matplotlib's Axes, not {shown(type(ax).__name__)}")
+    if ax.name in ("polar", "3d"):
+        raise InputError(f"{name} must be matplotlib's Axes of x and y, not {ax.name} ones")
     return ax
 
 

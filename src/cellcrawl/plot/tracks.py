@@ -25,6 +25,7 @@ from cellcrawl.plot.track_panels import (
     draw_turns,
     shown_units,
 )
+from cellcrawl.validation import listed, shown
 
 Results = Sequence[Classification | None]
 _EXAMPLES = 8
@@ -171,7 +172,8 @@ def as_tracks(given: Any) -> Tracks:
     if isinstance(given, (Track, xr.Dataset)):
         given = [given]
     if not isinstance(given, Tracks):
-        given = Tracks.of([as_track(one) for one in given])
+        several = listed("tracks", given, "tracks or runs")
+        given = Tracks.of([as_track(one) for one in several])
     found: Tracks = given
     if len(found) == 0:
         raise InputError("there are no tracks to draw")
@@ -184,9 +186,13 @@ def _results(given: Tracks, results: Results | None) -> Results:
             classify_track(track.t, track.x, track.y) if len(track) >= FEWEST_RECORDS else None
             for track in given
         ]
-    if len(results) != len(given):
-        raise InputError(f"there are {len(results)} results for {len(given)} tracks")
-    return results
+    found = listed("results", results, "a list, one of each track")
+    if len(found) != len(given):
+        raise InputError(f"there are {len(found)} results for {len(given)} tracks")
+    wrong = [one for one in found if not (one is None or isinstance(one, Classification))]
+    if wrong:
+        raise InputError(f"results are what classify_track returns, or None, not {shown(wrong[0])}")
+    return found
 
 
 def _examples(given: Tracks, found: Results, count: int) -> list[int]:

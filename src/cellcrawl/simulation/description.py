@@ -10,12 +10,16 @@ from typing import Any
 
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError, nearest_name
+from cellcrawl.laws import as_law
+from cellcrawl.laws.law import PAPER
+from cellcrawl.laws.rest import CellAtRest, rest_state
 from cellcrawl.parameters import CONSTANT, DESCRIPTIONS, Conditions, Parameters, Schedule
 from cellcrawl.simulation.dataset import SCHEMA_VERSION, package_version
 from cellcrawl.simulation.events import crossing_at
 from cellcrawl.simulation.following import check_records
 from cellcrawl.solvers import SOLVERS, Solver
 from cellcrawl.starts import Eigenmode, FromOutline, PerturbedCircle, RandomPerturbation, Start
+from cellcrawl.surroundings import as_surroundings
 from cellcrawl.validation import one_of, real_number, shown, table
 
 DEFAULT_SOLVER = "adaptive"
@@ -31,7 +35,7 @@ class RunDescription:
 
     Parameters
     ----------
-    parameters, t_end, start, save_every, solver, nodes, schedule
+    parameters, t_end, start, save_every, solver, nodes, schedule, laws, surroundings
         As in `simulate`; None stands for what is usual.
     options : mapping
         The solver's own options.
@@ -50,14 +54,20 @@ class RunDescription:
     solver: str = DEFAULT_SOLVER
     nodes: int | None = None
     schedule: Schedule = CONSTANT
+    laws: Any = PAPER
+    surroundings: Any = None
     options: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         scheme = solver_named(self.solver)
-        checked = {
+        checked: dict[str, Any] = {
             "t_end": real_number("t_end", self.t_end, 0.0, 1e9),
             "save_every": real_number("save_every", self.save_every, 0.0, 1e9, open_low=True),
             "nodes": scheme.checked_nodes(self.nodes),
+        }
+        checked |= {
+            "laws": as_law(self.laws),
+            "surroundings": as_surroundings(self.surroundings),
         }
         for name, value in checked.items():
             object.__setattr__(self, name, value)
@@ -69,17 +79,35 @@ class RunDescription:
     @property
     def conditions(self) -> Conditions:
         """The parameters and how they change."""
-        return Conditions(self.parameters, self.schedule)
+        return Conditions(self.parameters, self.schedule, self.laws, self.surroundings)
 
     def solver_at_start(self) -> Solver:
         """Return the solver with the first state, or raise `InputError` if it cannot be had."""
         scheme, conditions = solver_named(self.solver), self.conditions
         assert self.nodes is not None
-        state = self.start.state(conditions.at(0.0), scheme.start_nodes(self.nodes, **self.options))
+        nodes = scheme.start_nodes(self.nodes, **self.options)
+        state = self.start.state(self._resting(conditions.at(0.0)), nodes)
         engine = scheme(state, conditions, nodes=self.nodes, **self.options)
         if crossing_at(engine, 0.0) is not None:
             raise InputError("the start crosses itself: the model needs a simple edge")
         return engine
+
+    def _resting(self, parameters: Parameters) -> Parameters:
+        """Return parameters with the resting circle of this run's law."""
+        if self.laws == PAPER:
+            return parameters
+        if isinstance(self.start, Eigenmode):
+            raise InputError("Eigenmode knows the paper's laws only: give another start")
+        return CellAtRest.of(parameters, rest_state(parameters, self.laws))
+
+    def _world(self) -> dict[str, Any]:
+        """Return laws and surroundings as plain values, where they are not the paper's."""
+        world: dict[str, Any] = {}
+        if self.laws != PAPER:
+            world["laws"] = self.laws.describe()
+        if self.surroundings is not None:
+            world["surroundings"] = self.surroundings.describe()
+        return world
 
     def identity(self, engine: Solver) -> dict[str, Any]:
         """Return what a saved run says of how it was made."""
@@ -93,6 +121,7 @@ class RunDescription:
             "save_every": self.save_every,
             "cellcrawl_version": package_version(),
             "schema_version": SCHEMA_VERSION,
+            **self._world(),
         }
 
     def describe(self) -> dict[str, Any]:
@@ -106,6 +135,7 @@ class RunDescription:
             "options": {**_usual_options(self.solver), **self.options},
             "save_every": self.save_every,
             "t_end": self.t_end,
+            **self._world(),
         }
 
 

@@ -11,10 +11,11 @@ import xarray as xr
 
 from cellcrawl.arguments import checked
 from cellcrawl.curve import Curve, fourier
-from cellcrawl.data import is_dimensionless, records_with
+from cellcrawl.data import records_with
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import Parameters
 from cellcrawl.simulation.storage import open_run
+from cellcrawl.simulation.units import DIMENSIONLESS, units_of
 from cellcrawl.starts import CellState
 from cellcrawl.validation import whole_number
 
@@ -65,9 +66,9 @@ class FromRun:
             If there is no such record, or the dataset is no run in the model's units.
         """
         dataset = records_with(self._dataset())
-        if not is_dimensionless(dataset):
+        if units_of(dataset) != DIMENSIONLESS:
             raise InputError(
-                "FromRun needs a run in the model's units, and this one is in SI: give the run "
+                "FromRun needs a run in the model's units, and this one is in others: give the run "
                 "that it was made from"
             )
         count = dataset.sizes["time"]

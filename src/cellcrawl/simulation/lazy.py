@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -27,12 +28,26 @@ def readable(path: Path) -> Iterator[None]:
         yield
     except CellcrawlError:
         raise
+    except MemoryError as error:
+        raise StorageError(f"cannot read {path}: {error or 'there is not enough memory'}") from None
     except Exception as error:
-        words = " ".join(str(error).split())
-        if "checksum" in words.lower() or "fletcher32" in words.lower():
-            words = "its content is not what its checksum says"
-        reason = words[:120] or type(error).__name__
-        raise StorageError(f"cannot read {path}: {reason}") from None
+        number = getattr(error, "errno", None)
+        if number and not path.is_dir():
+            raise StorageError(f"cannot read {path}: {os.strerror(number)}") from None
+        raise damaged(path, _told(path, str(error).lower())) from None
+
+
+def _told(path: Path, words: str) -> str:
+    """Return in our words what HDF5, h5netcdf, Zarr and xarray make of a damaged file."""
+    if "checksum" in words or "fletcher32" in words:
+        return "its content is not what its checksum says"
+    if path.suffix == ".nc" and (path.is_dir() or "signature" in words):
+        return "it is no netCDF-4 file"
+    if "truncated" in words or "eof" in words:
+        return "it is cut short"
+    if path.suffix == ".zarr" and "no group" in words:
+        return "it is no Zarr store"
+    return "it cannot be read"
 
 
 def open_lazily(path: Path, engine: str, **options: Any) -> xr.Dataset:

@@ -11,6 +11,8 @@ import xarray as xr
 from cellcrawl.arguments import checked
 from cellcrawl.data import FIELDS, SCHEMA_VERSION, decode_attribute
 from cellcrawl.errors import CellcrawlError, InputError, StorageError
+from cellcrawl.laws import as_law
+from cellcrawl.laws.law import PAPER
 from cellcrawl.parameters import CONSTANT, Conditions, Parameters, Schedule
 from cellcrawl.simulation.description import DEFAULT_SOLVER, RunDescription, solver_named
 from cellcrawl.simulation.events import RESUMABLE
@@ -21,6 +23,7 @@ from cellcrawl.simulation.storage import RunStore
 from cellcrawl.simulation.tension_law import KEY, TensionLaw
 from cellcrawl.solvers import Solver
 from cellcrawl.starts import RandomPerturbation, Start
+from cellcrawl.surroundings import as_surroundings
 from cellcrawl.validation import real_number
 
 _SAME = 1e-9  # a restored state gives its last record to rounding
@@ -36,6 +39,8 @@ def simulate(
     solver: str = DEFAULT_SOLVER,
     nodes: int | None = None,
     schedule: Schedule | None = None,
+    laws: Any = None,
+    surroundings: Any = None,
     output: str | Path | None = None,
     overwrite: bool = False,
     progress: bool = False,
@@ -63,6 +68,10 @@ def simulate(
         and take 2000 and 512.
     schedule : Schedule, optional
         Parameters that change during the run.
+    laws : Law or str, optional
+        A law set of `cellcrawl.laws`, by itself or by name; the paper's unless given.
+    surroundings : Surrounding or sequence of these, optional
+        What the cell crawls in, of `cellcrawl.surroundings`.
     output : str or Path, optional
         ``run.nc`` (netCDF) or ``run.zarr``. Written in blocks while the run goes: memory stays
         flat, and a killed run opens with `open_run` and goes on with `resume`.
@@ -102,6 +111,8 @@ def simulate(
         solver=solver,
         nodes=nodes,
         schedule=CONSTANT if schedule is None else schedule,
+        laws=PAPER if laws is None else laws,
+        surroundings=surroundings,
         options=options,
     )
     store = RunStore(output) if output is not None else None
@@ -189,6 +200,9 @@ def _resume(store: RunStore, until: float, progress: bool) -> xr.Dataset:
         for name in ("seed", "solver", "save_every", "cellcrawl_version"):
             identity[name] = saved.attrs[name]
         identity["schema_version"] = SCHEMA_VERSION
+        for name in ("laws", "surroundings"):
+            if name in saved.attrs:
+                identity[name] = decode_attribute(saved, name)
         records = int(saved.attrs["records_on_grid"])
         spent = decode_attribute(saved, "diagnostics").get("wall_time", 0.0)
         last = saved[["time", *FIELDS]].isel(time=[-1]).load()
@@ -199,7 +213,10 @@ def _resume(store: RunStore, until: float, progress: bool) -> xr.Dataset:
         raise InputError(f"{store.path} has reached t = {reached:g} already: t_end must be above")
     checkpoint = store.checkpoint()
     conditions = Conditions(
-        Parameters.from_dict(identity["parameters"]), Schedule(identity["schedule"])
+        Parameters.from_dict(identity["parameters"]),
+        Schedule(identity["schedule"]),
+        as_law(identity.get("laws", PAPER)),
+        as_surroundings(identity.get("surroundings")),
     )
     engine, law = _restored(checkpoint, conditions, identity, last, store.path)
     store.check_records()

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from cellcrawl.arguments import checked
+from cellcrawl.arguments import checked, file_path
 from cellcrawl.data import VARIABLES, checked_attributes
 from cellcrawl.errors import InputError, MissingExtraError, StorageError, what_would_help
 from cellcrawl.locks import locked
@@ -53,7 +53,9 @@ class RunStore:
     """
 
     def __init__(self, path: str | Path) -> None:
-        self.path = checked_path(path)
+        given = checked_path(path)
+        # The file that a link leads to: its lock and its blocks are those of every name it has.
+        self.path = given.resolve() if given.is_symlink() else given
         self._format = formats.by_suffix(self.path)
         self.part = self._beside(".part")
         self._nascent = self._beside(".part.new")
@@ -396,9 +398,7 @@ def open_run(path: str | Path) -> xr.Dataset:
 
 def checked_path(path: Any) -> Path:
     """Return ``path`` as a Path with a suffix we write, or raise `InputError`."""
-    if not isinstance(path, (str, os.PathLike)):
-        raise InputError(f"output must be a path, not {type(path).__name__}")
-    checked = Path(path)
+    checked = file_path("output", path)
     if checked.suffix not in formats.BY_SUFFIX:
         raise InputError(f"{checked} must end in .nc (netCDF) or .zarr")
     if checked.suffix == ".zarr":

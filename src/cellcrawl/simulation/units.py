@@ -77,7 +77,7 @@ def units_of(dataset: xr.Dataset) -> Units:
     possible = systems_of(dataset, VARIABLES)
     scales = _scales(dataset)
     if possible == set(SYSTEMS):  # nothing said
-        return DIMENSIONLESS if scales is None else Units("SI", scales)
+        return Units("SI", scales) if "scales" in dataset.attrs else DIMENSIONLESS
     system = next(system for system in SYSTEMS if system in possible)
     return Units(system, scales if system != "model" else None)
 

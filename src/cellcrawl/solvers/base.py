@@ -12,8 +12,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from cellcrawl.parameters import EDGE_ROWS, Conditions
-from cellcrawl.physics import laws
+from cellcrawl.laws.law import Law
+from cellcrawl.parameters import Conditions
 from cellcrawl.starts.base import CellState
 
 
@@ -149,20 +149,20 @@ class Solver(ABC):
         """Return what the solver did so far: steps, right-hand sides, largest closure error."""
 
 
-def pointwise_velocity_and_friction(
-    off_rate: np.ndarray, bound_fraction: np.ndarray, edge: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Normal velocity and friction of the edge from the model's laws.
+def pointwise(
+    laws: Law,
+    phi: np.ndarray,
+    bound_fraction: np.ndarray,
+    tension: float,
+    curvature: np.ndarray | float,
+    edge: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Off-rate, normal velocity and friction of the edge where bonds bear ``phi``.
 
-    Arrays have shape (nodes,), ``edge`` (len(EDGE_ROWS), nodes).
+    Arrays have shape (nodes,), ``edge`` (rows of the law, nodes).
     """
-    rows = dict(zip(EDGE_ROWS, edge, strict=True))
-    y = np.log(off_rate)
-    velocity = _on_arrays(laws.edge_velocity)(y, off_rate, rows["v_p"], rows["epsilon"])
-    friction = _on_arrays(laws.friction)(y, off_rate, bound_fraction, rows["zeta_1"])
-    return velocity, friction
-
-
-def _on_arrays(law: Any) -> Any:
-    """Return a law as it is: outside kernels it takes whole arrays, which its types do not say."""
-    return law
+    values = dict(zip(laws.rows, edge, strict=True))
+    values |= {"phi": phi, "n": bound_fraction, "sigma": tension, "kappa": curvature}
+    values["r"] = laws.compiled.evaluate("off_rate", values)
+    velocity = laws.compiled.evaluate("velocity", values)
+    return values["r"], velocity, laws.compiled.evaluate("friction", values)

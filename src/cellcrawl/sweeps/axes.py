@@ -8,10 +8,12 @@ from typing import Any, Final
 import numpy as np
 
 from cellcrawl.errors import InputError
+from cellcrawl.laws import Law, as_law
 from cellcrawl.parameters import DESCRIPTIONS, Schedule
 from cellcrawl.simulation.start_tables import start_from_table
 from cellcrawl.solvers import SOLVERS
 from cellcrawl.starts import Start
+from cellcrawl.surroundings import Surroundings, as_surroundings
 from cellcrawl.validation import known_names, real_number, shown, whole_number
 
 PARAMETERS: Final = (*DESCRIPTIONS, "elasticity")
@@ -19,7 +21,8 @@ OPTIONS: Final = tuple(
     dict.fromkeys(name for s in SOLVERS.values() for name in s.OPTIONS if name != "nodes")
 )
 SETTINGS: Final = ("t_end", "save_every", "solver", "nodes")
-NAMES: Final = (*PARAMETERS, "seed", "start", "schedule", *SETTINGS, *OPTIONS)
+WORLD: Final = ("laws", "surroundings")
+NAMES: Final = (*PARAMETERS, "seed", "start", "schedule", *WORLD, *SETTINGS, *OPTIONS)
 """Everything that may differ from run to run."""
 
 _MOST_VALUES = 1_000_000
@@ -45,7 +48,7 @@ def axis_values(name: str, given: Any) -> tuple[Any, ...]:
     known_names("the grid", [name], NAMES)
     if isinstance(given, Mapping) and "from" in given:
         given = _range(name, given)
-    if isinstance(given, (str, Mapping, Start, Schedule)) or not isinstance(
+    if isinstance(given, (str, Mapping, Start, Schedule, Surroundings)) or not isinstance(
         given, (Sequence, np.ndarray, range)
     ):
         given = [given]
@@ -68,6 +71,10 @@ def value_of(name: str, value: Any) -> Any:
         return start_from_table(value)
     if name == "schedule" and isinstance(value, Mapping):
         return Schedule(value)
+    if name == "laws":
+        return as_law(value)
+    if name == "surroundings":
+        return as_surroundings(value)
     if name in DESCRIPTIONS:
         limits = DESCRIPTIONS[name]
         return real_number(name, value, limits.low, limits.high)
@@ -78,7 +85,7 @@ def value_of(name: str, value: Any) -> Any:
 
 def plain(value: Any) -> Any:
     """Return a value of an axis as JSON has it."""
-    if isinstance(value, Start):
+    if isinstance(value, (Start, Law, Surroundings)):
         return value.describe()
     return value.to_dict() if isinstance(value, Schedule) else value
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import importlib.util
 import logging
 import multiprocessing
 import os
+import pickle
 import re
 import sys
 from collections.abc import Iterator
@@ -129,16 +131,31 @@ def _silence_dask() -> None:
 def _see_that_workers_know(grid: Grid) -> None:
     """Refuse a start of a class that is defined where no new process finds it."""
     script = getattr(sys.modules["__main__"], "__file__", None)
-    if _needs_main(grid) and (script is None or not Path(script).is_file()):
+    if (_needs_main(grid) and (script is None or not Path(script).is_file())) or not all(
+        map(_can_be_sent, _starts(grid))
+    ):
         raise InputError(
-            "a start is of a class that is defined in this notebook or session, where worker "
-            "processes cannot find it: put the class in a file of its own and import it, or give "
-            "executor=concurrent.futures.ThreadPoolExecutor(1)"
+            "a start is of a class that is defined in this notebook, session or function, where "
+            "worker processes cannot find it: put the class in a file of its own and import it, "
+            "or give executor=concurrent.futures.ThreadPoolExecutor(1)"
         )
 
 
 def _needs_main(grid: Grid) -> bool:
     """Whether a start is of a class that the user's script defines."""
+    return any(type(start).__module__ == "__main__" for start in _starts(grid))
+
+
+def _starts(grid: Grid) -> list[Any]:
     starts = [grid.start, *grid.axes.get("start", ())]
-    starts += [point["start"] for point in grid.points if "start" in point]
-    return any(type(start).__module__ == "__main__" for start in starts)
+    return starts + [point["start"] for point in grid.points if "start" in point]
+
+
+def _can_be_sent(start: Any) -> bool:
+    """Whether a process that knows our path of modules can make the start from its pickle."""
+    home = type(start).__module__
+    try:
+        pickle.dumps(start)
+        return home == "__main__" or importlib.util.find_spec(home) is not None
+    except Exception:  # a class within a function, a module without a file
+        return False

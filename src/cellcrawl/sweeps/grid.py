@@ -14,17 +14,27 @@ from typing import Any
 
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
+from cellcrawl.laws.law import PAPER
 from cellcrawl.parameters import CONSTANT, Parameters, Schedule
 from cellcrawl.parameters.named import read_toml
 from cellcrawl.simulation.description import DEFAULT_SOLVER, RunDescription
 from cellcrawl.simulation.start_tables import start_from_table
 from cellcrawl.starts import RandomPerturbation, Start
-from cellcrawl.sweeps.axes import NAMES, OPTIONS, PARAMETERS, SETTINGS, axis_values, plain, value_of
+from cellcrawl.sweeps.axes import (
+    NAMES,
+    OPTIONS,
+    PARAMETERS,
+    SETTINGS,
+    WORLD,
+    axis_values,
+    plain,
+    value_of,
+)
 from cellcrawl.sweeps.identity import start_identity
 from cellcrawl.validation import known_names, shown, table, whole_number
 
 _TABLES = ("parameters", "axes", "points", "start", "schedule", "run")
-_RUN = (*SETTINGS, *OPTIONS)
+_RUN = (*SETTINGS, *WORLD, *OPTIONS)
 
 
 @checked
@@ -68,6 +78,8 @@ class Grid:
     save_every: float = 0.1
     solver: str = DEFAULT_SOLVER
     nodes: int | None = None
+    laws: Any = PAPER
+    surroundings: Any = None
     options: Mapping[str, Any] = dataclasses.field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -116,15 +128,18 @@ class Grid:
             save_every=self.save_every,
             solver=self.solver,
             nodes=self.nodes,
+            laws=self.laws,
+            surroundings=self.surroundings,
             options=self.options,
         ).describe()
+        world = {name: usual[name] for name in WORLD if name in usual}
         return {
             "parameters": usual["parameters"],
             "axes": {name: [plain(v) for v in values] for name, values in self.axes.items()},
             "points": [{n: plain(v) for n, v in point.items()} for point in self.points],
             "start": usual["start"],
             "schedule": usual["schedule"],
-            "run": {**{name: usual[name] for name in SETTINGS}, **usual["options"]},
+            "run": {**{name: usual[name] for name in SETTINGS}, **world, **usual["options"]},
         }
 
     @property
@@ -193,7 +208,7 @@ class Grid:
             start = _seeded(start, rest.pop("seed"))
         own = {name: rest.pop(name) for name in PARAMETERS if name in rest}
         options = {**self.options, **{name: rest.pop(name) for name in OPTIONS if name in rest}}
-        shared = {name: getattr(self, name) for name in ("schedule", *SETTINGS)}
+        shared = {name: getattr(self, name) for name in ("schedule", *WORLD, *SETTINGS)}
         return RunDescription(
             parameters=self.parameters.replace(**own) if own else self.parameters,
             start=start,
@@ -256,7 +271,7 @@ def united(grids: Sequence[Grid]) -> Grid:
 
 def _own_settings(grid: Grid) -> dict[str, Any]:
     """Return what a grid's runs share, as values of a point."""
-    settings = {name: getattr(grid, name) for name in ("start", "schedule", *SETTINGS)}
+    settings = {name: getattr(grid, name) for name in ("start", "schedule", *WORLD, *SETTINGS)}
     settings = {name: value for name, value in settings.items() if value is not None}
     return {**grid.parameters.to_dict(), **settings, **grid.options}
 

@@ -18,12 +18,14 @@ from cellcrawl.starts import Start
 ROW_SCHEMA: Final = 1
 _DECIDING: Final = (
     "data",
+    "laws",
     "parameters",
     "physics",
     "curve",
     "linear",
     "starts",
     "solvers",
+    "surroundings",
     "simulation",
     "observables",
     "modes",

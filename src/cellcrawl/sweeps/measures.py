@@ -45,9 +45,15 @@ def described_columns(run: RunDescription) -> dict[str, Any]:
         "solver": run.solver,
         "nodes": run.nodes,
         "options": json.dumps(described["options"]),
+        "laws": _text(described.get("laws")),
+        "surroundings": _text(described.get("surroundings")),
         "t_end": run.t_end,
         "save_every": run.save_every,
     }
+
+
+def _text(value: Any) -> str | None:
+    return None if value is None else json.dumps(value)
 
 
 def measured_columns(track: Track) -> dict[str, Any]:

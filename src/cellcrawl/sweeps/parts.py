@@ -21,7 +21,18 @@ from cellcrawl.sweeps.measures import MEASURES
 if TYPE_CHECKING:
     import pyarrow as pa
 
-_TEXT: Final = ("elasticity", "start", "schedule", "solver", "options", "mode", "status", "message")
+_TEXT: Final = (
+    "elasticity",
+    "start",
+    "schedule",
+    "solver",
+    "options",
+    "laws",
+    "surroundings",
+    "mode",
+    "status",
+    "message",
+)
 _WHOLE: Final = ("seed", "nodes", "steps")
 COLUMNS: Final = (
     "key",
@@ -33,6 +44,8 @@ COLUMNS: Final = (
     "solver",
     "nodes",
     "options",
+    "laws",
+    "surroundings",
     "t_end",
     "save_every",
     "mode",
@@ -134,11 +147,15 @@ def read_part(path: Path, columns: Sequence[str] | None = None) -> pa.Table:
         if wanted is not None and zlib.crc32(content) != int(wanted.group(1), 16):
             raise _damaged(path, "its content is not what its checksum says")
         with parquet.ParquetFile(pa.BufferReader(content)) as file:
-            return file.read(columns=None if columns is None else list(columns))
+            table = file.read(columns=None if columns is None else list(columns))
     except (FileNotFoundError, StorageError):
         raise
     except (OSError, KeyError, pa.ArrowException) as error:
         raise _damaged(path, " ".join(str(error).split())[:150]) from None
+    for field in schema():  # columns that an older version did not write
+        if field.name not in table.column_names and (columns is None or field.name in columns):
+            table = table.append_column(field, pa.nulls(len(table), field.type))
+    return table if columns is None else table.select(list(columns))
 
 
 def _damaged(path: Path, reason: str) -> StorageError:

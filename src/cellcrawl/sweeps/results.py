@@ -14,7 +14,7 @@ import xarray as xr
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.simulation.events import MODEL_ENDINGS
-from cellcrawl.sweeps.axes import plain
+from cellcrawl.sweeps.axes import plain, value_of
 from cellcrawl.sweeps.grid import Grid, united
 from cellcrawl.sweeps.kept import read_kept
 from cellcrawl.sweeps.measures import MEASURES, described_columns
@@ -285,8 +285,14 @@ def open_sweep(path: str | Path, grid: Grid | None = None) -> Sweep:
 
 def _as_in_a_row(name: str, value: Any) -> Any:
     """Return a value of a run as the column of that name holds it, or raise `InputError`."""
+    if name in ("laws", "surroundings") and value is not None:
+        value = value_of(name, value)
     value = plain(plain_number(value))
-    if name in ("start", "schedule", "options") and not isinstance(value, str):
+    if (
+        name in ("start", "schedule", "options", "laws", "surroundings")
+        and value is not None
+        and not isinstance(value, str)
+    ):
         try:
             return json.dumps(value)
         except (TypeError, ValueError):

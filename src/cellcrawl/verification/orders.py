@@ -64,8 +64,9 @@ def _rates(parameters: Parameters, nodes: int) -> np.ndarray:
     edge = np.vstack([conditions.edge(0.0, nodes), np.full(nodes, parameters.tension_rate)])
     mesh = np.zeros((MESH_ROWS, nodes + 2 * HALO))
     hold(layout.fields(state)[2], mesh, nodes)
-    renew_rates(log_rate, work)
-    if not rates(state, out, log_rate, edge, mesh, work):
+    laws = conditions.laws.compiled
+    renew_rates(laws, log_rate, edge, work)
+    if not rates(laws, None, 0.0, state, out, log_rate, edge, mesh, work):
         raise RuntimeError("the check start has no off-rate somewhere")
     return out
 

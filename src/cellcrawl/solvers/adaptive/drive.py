@@ -6,7 +6,7 @@ a run may be stopped and resumed anywhere to the same bits.
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -118,6 +118,8 @@ def change_step(
 
 @woven_kernel
 def solve_step(
+    laws: Any,
+    around: Any,
     tolerance: float,
     contrast: float,
     control: np.ndarray,
@@ -133,6 +135,7 @@ def solve_step(
     """Solve the implicit formula for the state a step ahead by simplified Newton iterations."""
     order = counters[ORDER]
     c = control[STEP] / LEADING[order]
+    time = control[TIME] + control[STEP]
     now, correction = table[_ITERATE], table[_CORRECTION]
     residual, history = table[_RESIDUAL], table[_HISTORY]
     predict(order, table, now, history)
@@ -149,15 +152,15 @@ def solve_step(
     hold(now[g], mesh, y.size)
     if profile.shape[1] > 1:
         edge_on_mesh(profile, now[g], edge, work)
-    renew_rates(y, work)
+    renew_rates(laws, y, edge, work)
     stale = counters[MATRIX_AGE] >= _MATRIX_LASTS
     last = 0.0
     for iteration in range(_ITERATIONS):
         counters[RATES] += 1
-        if not rates(now, residual, y, edge, mesh, work):
+        if not rates(laws, around, time, now, residual, y, edge, mesh, work):
             return ROOTLESS
         if iteration == 0 and (stale or control[FACTORED] != c):
-            factor(c, now, y, edge, mesh, work, matrix)
+            factor(laws, around, c, now, y, edge, mesh, work, matrix)
             control[FACTORED] = c
             counters[MATRIX_AGE] = 0
             counters[FACTORINGS] += 1
@@ -183,6 +186,8 @@ def solve_step(
 
 
 def bend_history(
+    laws: Any,
+    around: Any,
     control: np.ndarray,
     counters: np.ndarray,
     table: np.ndarray,
@@ -203,14 +208,14 @@ def bend_history(
     span = nodes + 2 * HALO
     fields = state[:span], state[span : 2 * span], state[2 * span : 3 * span]
     lay_out(*fields, h, order, mesh, nodes)
-    renew_rates(y, work)
-    if not rates(state, residual, y, edge, mesh, work):
+    renew_rates(laws, y, edge, work)
+    if not rates(laws, around, control[TIME], state, residual, y, edge, mesh, work):
         return
     residual *= h
     for j in range(1, order + 1):
         residual -= table[j] / j
     c = h / LEADING[order]
-    factor(c, state, y, edge, mesh, work, matrix)
+    factor(laws, around, c, state, y, edge, mesh, work, matrix)
     solve(c, state, mesh, matrix, residual)
     table[1] += residual
 
@@ -249,6 +254,8 @@ def choose_step(
 
 @kernel
 def run(
+    laws: Any,
+    around: Any,
     target: float,
     end: float,
     tolerance: float,
@@ -269,8 +276,8 @@ def run(
     """Step until ``target`` is reached or something is for the caller to do.
 
     ``allowed`` is what the grid may miss (see `resolution`) while the nodes stay in their range.
-    ``edge`` holds the parameters and G at the midpoints, shape (8, nodes), at the end of the next
-    step; while they are ``ramping``, only one step is tried (`RETRY`).
+    ``edge`` holds the law's parameters and G at the midpoints, shape (rows, nodes), at the end of
+    the next step; while they are ``ramping``, only one step is tried (`RETRY`).
     """
     tried = 0
     nodes = y.size
@@ -287,7 +294,19 @@ def run(
         order = counters[ORDER]
         contrast = min(max(control[CONTRAST], _LEAST_CONTRAST), 1.0)
         ended = solve_step(
-            tolerance, contrast, control, counters, table, y, profile, edge, mesh, matrix, work
+            laws,
+            around,
+            tolerance,
+            contrast,
+            control,
+            counters,
+            table,
+            y,
+            profile,
+            edge,
+            mesh,
+            matrix,
+            work,
         )
         correction = table[_CORRECTION]
         error = np.inf

@@ -13,11 +13,11 @@ import numpy as np
 
 from cellcrawl._compile import inlined_kernel, kernel
 from cellcrawl.curve.fourier import BEFORE, TAPS
-from cellcrawl.physics.exponential import exponential
-from cellcrawl.physics.force_balance import SOLVED, balance, solve_off_rate
-from cellcrawl.physics.laws import driving_force, edge_velocity, friction
+from cellcrawl.laws.functions import friction, off_rate, velocity
+from cellcrawl.physics.force_balance import SOLVED, bond_force, solve_bonds
 from cellcrawl.solvers.adaptive import state as layout
 from cellcrawl.solvers.adaptive.differences import interpolate
+from cellcrawl.solvers.adaptive.entries import FIELDS, LENGTH, ORIGIN_X, ORIGIN_Y, SCALARS, TENSION
 from cellcrawl.solvers.adaptive.mesh import places
 from cellcrawl.solvers.adaptive.projection import (
     COSINE,
@@ -29,16 +29,9 @@ from cellcrawl.solvers.adaptive.projection import (
     tangent,
     trace,
 )
-from cellcrawl.solvers.adaptive.rates import (
-    FIELDS,
-    LENGTH,
-    ORIGIN_X,
-    ORIGIN_Y,
-    SCALARS,
-    TENSION,
-)
 from cellcrawl.solvers.adaptive.staggered import HALO, difference_ahead, fill_halo, mean_ahead
 from cellcrawl.solvers.base import Frame, Instant
+from cellcrawl.surroundings.place import placed
 
 KAPPA, PLACE = COSINE, SINE  # rows that hold these once the tangent has been used
 _HALO = np.uint64(HALO)
@@ -93,13 +86,18 @@ def instant(time: float, shape: Shape) -> Instant:
     return Instant(time=time, **_whole_cell(shape))
 
 
-def frame(time: float, shape: Shape, log_rate: np.ndarray, edge: np.ndarray) -> Frame:
+def frame(
+    laws: Any, around: Any, time: float, shape: Shape, log_rate: np.ndarray, edge: np.ndarray
+) -> Frame:
     """Return the cell on ``edge.shape[1]`` nodes.
 
     ``log_rate`` is any guess of ``log r`` at the solver's midpoints.
     """
     out = np.empty((_FRICTION + 1, edge.shape[1]))
-    _sample(shape.state, shape.work, edge, log_rate, out)
+    y = np.empty(edge.shape[1])
+    _sample(shape.state, shape.work, log_rate, y, out)
+    edge = placed(around, time, out[0], out[1], (np.cos(out[2]), np.sin(out[2])), edge)
+    _balance(laws, float(layout.scalars(shape.state)[TENSION]), edge, y, out)
     return Frame(
         time=time,
         **{name: out[row] for row, name in enumerate(_ROWS)},
@@ -159,15 +157,15 @@ def _edge_shape(
 
 @kernel
 def _sample(
-    state: np.ndarray, work: np.ndarray, edge: np.ndarray, log_rate: np.ndarray, out: np.ndarray
+    state: np.ndarray, work: np.ndarray, log_rate: np.ndarray, y: np.ndarray, out: np.ndarray
 ) -> None:
-    """Fill ``out`` with the fields at equal arclengths; ``log_rate`` guesses ``log r``."""
+    """Fill ``out`` with shape and bound fraction at equal arclengths, ``y`` with a guess of phi."""
     nodes, count = out.shape[1], log_rate.size
     span = count + 2 * HALO
     w, n, g = state[:span], state[span : 2 * span], state[2 * span : 3 * span]
     scalars = state[3 * span :]
     place, turn = work[PLACE], 2.0 * math.pi / count
-    weights, y = np.empty(TAPS), np.empty(nodes)
+    weights = np.empty(TAPS)
     before = 0  # the node at or before the place
     for i in range(nodes):
         wanted = i * (count / nodes)
@@ -185,17 +183,22 @@ def _sample(
         out[3, i] = _weighted(work[KAPPA], first, weights)
         out[4, i] = _weighted(n, first, weights)
         y[i] = log_rate[before]
-    sigma, kappa, bound = scalars[TENSION], out[3], out[4]
-    failed = solve_off_rate(y, bound, sigma, kappa, edge[1], edge[5], edge[4])
+
+
+@kernel
+def _balance(laws: Any, sigma: float, edge: np.ndarray, y: np.ndarray, out: np.ndarray) -> None:
+    """Fill ``out`` with what follows from the balance of forces."""
+    nodes, kappa, bound = y.size, out[3], out[4]
+    failed = solve_bonds(laws, y, bound, sigma, kappa, edge)
     if failed != SOLVED:  # the edge left the model's range between the solver's midpoints
         for i in range(failed, nodes):
-            force = driving_force(sigma, kappa[i], edge[5, i], edge[4, i])
-            y[i] = max(balance(y[i], bound[i], edge[1, i], max(force, 0.0)), 0.0)
+            root = bond_force(laws, y[i], bound[i], sigma, kappa[i], edge, i)
+            y[i] = root if root == root else 0.0
     for i in range(nodes):
-        r = exponential(y[i])
+        r = off_rate(laws, y[i], edge, i)
         out[5, i] = r
-        out[_VELOCITY, i] = edge_velocity(y[i], r, edge[6, i], edge[3, i])
-        out[_FRICTION, i] = friction(y[i], r, bound[i], edge[1, i])
+        out[_VELOCITY, i] = velocity(laws, y[i], r, sigma, kappa[i], edge, i)
+        out[_FRICTION, i] = friction(laws, y[i], r, bound[i], edge, i)
 
 
 @kernel

@@ -9,22 +9,22 @@ moves. Kernels use the paper's letters.
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.physics.laws import friction_slope
-from cellcrawl.solvers.adaptive.mesh import FINE, FINE_NODE
-from cellcrawl.solvers.adaptive.rates import (
+from cellcrawl.laws.functions import partials
+from cellcrawl.solvers.adaptive.entries import (
     AREA,
     LENGTH,
     ORIGIN_X,
     ORIGIN_Y,
-    RATE,
     TENSION,
     TENSION_RATE,
 )
+from cellcrawl.solvers.adaptive.mesh import FINE, FINE_NODE
+from cellcrawl.solvers.adaptive.rates import RATE
 from cellcrawl.solvers.adaptive.staggered import HALO, difference_ahead, dot, fill_halo
 from cellcrawl.solvers.cyclic import FACTOR_ROWS, factor_cyclic_tridiagonal, solve_factored
 
@@ -59,6 +59,8 @@ def _blend(a: np.ndarray, out: np.ndarray) -> None:
 
 @kernel
 def factor(
+    laws: Any,
+    around: Any,
     c: float,
     state: np.ndarray,
     y: np.ndarray,
@@ -72,6 +74,9 @@ def factor(
     span = nodes + 2 * HALO
     w, n, g = state[:span], state[span : 2 * span], state[2 * span : 3 * span]
     scalars = state[3 * span :]
+    local = edge
+    if around is not None:
+        local = around.local
     fine, fine_node = mesh[FINE], mesh[FINE_NODE]
     per_spacing = nodes / scalars[LENGTH]
     winding = 2.0 * math.pi / scalars[LENGTH]
@@ -80,28 +85,30 @@ def factor(
     lower, diagonal, upper = matrix[_SCRATCH], matrix[_SCRATCH + 1], matrix[_SCRATCH + 2]
     answer, loosened = matrix[ANSWER], matrix[LOOSENED]
     spreading = _MIDDLING * c * per_spacing**2
-    r_on, zeta_1, epsilon, h, rate = edge[0], edge[1], edge[3], edge[4], work[RATE]
+    rate = work[RATE]
     pulled, loss, slide = work[0], work[1], work[3]
     for i in range(np.uint64(nodes)):
         j = i + _HALO
-        r, log_r = rate[i], y[i]
         bend[i] = winding + per_spacing * difference_ahead(w, j)
-        pull = 1.0 + bend[i] * fine[j] * h[i]
-        yielding = 1.0 / friction_slope(log_r, r, n[j], zeta_1[i])
-        share = epsilon[i] * r * (1.0 + log_r) * yielding
-        slip = n[j] * r * yielding
-        by_linkers[i] = share * zeta_1[i] * log_r
-        by_tension[i] = -share * pull
-        kept = max(1.0 + c * (r_on[i] + r - slip * zeta_1[i] * log_r), _LEAST_PIVOT)
+        kappa = bend[i] * fine[j]
+        by_phi, by_n, by_sigma, by_kappa, u_phi, u_sigma, u_kappa, b_phi, b_n = partials(
+            laws, y[i], rate[i], n[j], sigma, kappa, local, i
+        )
+        yielding = -1.0 / by_phi  # how phi answers to a balance that is off
+        share, slip = u_phi * yielding, b_phi * yielding
+        by_linkers[i] = share * by_n
+        by_tension[i] = share * by_sigma + u_sigma
+        kept = max(1.0 - c * (b_n + slip * by_n), _LEAST_PIVOT)
         loss[j] = g[j] * kept
-        lower[i] = -c * slip * pull * g[j]
-        tense = max(sigma, 0.0) * h[i] * fine[j]
-        loosened[i] = c * slip * tense / (kept + spreading * edge[2, i] * fine[j] * fine[j])
-        pulled[j] = share * tense + by_linkers[i] * loosened[i]
+        lower[i] = c * slip * by_sigma * g[j]
+        smoothing = max(-share * by_kappa - u_kappa, 0.0) * fine[j]
+        loosening = c * max(-slip * by_kappa, 0.0) * fine[j]
+        loosened[i] = loosening / (kept + spreading * local[2, i] * fine[j] * fine[j])
+        pulled[j] = smoothing + by_linkers[i] * loosened[i]
     _blend(lower, answer)
     fill_halo(loss, nodes)
     fill_halo(pulled, nodes)
-    diffusivity = edge[2]
+    diffusivity = local[2]
     spread = c * per_spacing**2 * _COMPACT_SCALE
     carried = 0.25 * c * per_spacing
     for i in range(np.uint64(nodes)):
@@ -128,9 +135,9 @@ def factor(
         asked[i] = by_linkers[i] * inner[i]
     pull_back = dot(by_tension, inner)
     slope = pull_back + dot(asked, answer)
-    gain = c * edge[TENSION_RATE, 0] / per_spacing
+    gain = c * local[TENSION_RATE, 0] / per_spacing
     matrix[SCALARS, 0] = gain
-    matrix[SCALARS, 2] = edge[TENSION_RATE, 0]
+    matrix[SCALARS, 2] = local[TENSION_RATE, 0]
     matrix[SCALARS, 1] = 1.0 / max(1.0 - gain * slope, _LEAST_PIVOT)
 
 

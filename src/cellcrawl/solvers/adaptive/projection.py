@@ -13,7 +13,7 @@ import numpy as np
 
 from cellcrawl._compile import kernel, woven_kernel
 from cellcrawl.curve.sines import sine_and_cosine
-from cellcrawl.solvers.adaptive.rates import AREA, LENGTH, ORIGIN_X, ORIGIN_Y
+from cellcrawl.solvers.adaptive.entries import AREA, LENGTH, ORIGIN_X, ORIGIN_Y
 from cellcrawl.solvers.adaptive.staggered import (
     HALO,
     cell_mean,

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.solvers.adaptive.rates import FIELDS
+from cellcrawl.solvers.adaptive.entries import FIELDS
 from cellcrawl.solvers.adaptive.staggered import (
     HALO,
     difference_ahead,

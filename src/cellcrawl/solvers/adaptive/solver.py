@@ -15,6 +15,7 @@ from cellcrawl.solvers.adaptive.differences import DIFFERENCES
 from cellcrawl.solvers.adaptive.frame import Shape, frame, instant, shape_between
 from cellcrawl.solvers.adaptive.mesh import MESH_ROWS, edge_on_mesh, hold, lay_out
 from cellcrawl.solvers.adaptive.newton import MATRIX_ROWS
+from cellcrawl.solvers.adaptive.place import around
 from cellcrawl.solvers.adaptive.projection import project
 from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, renew_rates
 from cellcrawl.solvers.adaptive.staggered import HALO
@@ -59,6 +60,8 @@ class AdaptiveSolver(Solver):
         min_nodes: int = 64,
     ) -> None:
         self._conditions = conditions
+        self._laws = conditions.laws.compiled
+        self._compiled_surroundings = conditions.around()
         self._nodes = self.checked_nodes(nodes)
         self._rtol = real_number("rtol", rtol, 1e-10, 1e-2)
         counts = resolution.NODE_COUNTS
@@ -97,6 +100,8 @@ class AdaptiveSolver(Solver):
             if self._counters[drive.RESTARTING] and not self._restart():
                 return self._no_root(now)
             code = drive.run(
+                self._laws,
+                self._around,
                 target,
                 end,
                 _local_tolerance(self._rtol),
@@ -125,7 +130,9 @@ class AdaptiveSolver(Solver):
 
     def frame(self, time: float) -> Frame:
         edge = self._conditions.edge(time, self._nodes)
-        return frame(time, self._shape(time), self._log_rate, edge)
+        return frame(
+            self._laws, self._compiled_surroundings, time, self._shape(time), self._log_rate, edge
+        )
 
     def _shape(self, time: float) -> Shape:
         """Return the edge at ``time``, measured once."""
@@ -199,7 +206,7 @@ class AdaptiveSolver(Solver):
         if nodes > self._max_nodes:
             raise InputError(
                 f"the start needs more than max_nodes = {self._max_nodes} at rtol = "
-                f"{self._rtol:g}: raise max_nodes or rtol, or use a smoother start"
+                f"{self._rtol:g}: {self._for_more_nodes()}, or use a smoother start"
             )
         differences = np.zeros((DIFFERENCES, layout.size(nodes)))
         differences[0] = layout.from_cell(start, nodes)
@@ -221,6 +228,8 @@ class AdaptiveSolver(Solver):
         self._work = np.zeros((WORK_ROWS, nodes + 2 * HALO))
         self._mesh = np.zeros((MESH_ROWS, nodes + 2 * HALO))
         self._matrix = np.zeros((MATRIX_ROWS, nodes))
+        rows = len(self._conditions.laws.rows) + 1
+        self._around = around(self._compiled_surroundings, rows, nodes)
         self._control[drive.FACTORED] = 0.0
         self._edges: tuple[float, np.ndarray, np.ndarray] | None = None
         self._tally[0] = min(self._tally[0] or nodes, nodes)
@@ -232,10 +241,20 @@ class AdaptiveSolver(Solver):
         nodes = layout.nodes_of(table)
         edge = self._midpoints(self.time)
         lay_out(*layout.fields(table[0]), _SHORT, 1, self._mesh, nodes)
-        renew_rates(self._log_rate, self._work)
+        renew_rates(self._laws, self._log_rate, edge, self._work)
         table[1:] = 0.0
         counters[drive.RATES] += 1
-        if not rates(table[0], table[1], self._log_rate, edge, self._mesh, self._work):
+        if not rates(
+            self._laws,
+            self._around,
+            self.time,
+            table[0],
+            table[1],
+            self._log_rate,
+            edge,
+            self._mesh,
+            self._work,
+        ):
             return False
         _, control[drive.CONTRAST] = resolution.missed(table[0], nodes, self._work)
         control[drive.FORMATION] = resolution.formation(layout.fields(table[0])[1], nodes)
@@ -264,7 +283,7 @@ class AdaptiveSolver(Solver):
         return *self._parameters(now + h), True
 
     def _parameters(self, time: float, *, before: bool = False) -> tuple[np.ndarray, np.ndarray]:
-        """Local parameters and G as `_edge` returns them, shapes (8, places) and (8, nodes)."""
+        """Local parameters and G as `_edge` returns them, (rows, places) and (rows, nodes)."""
         places = 1 if self._conditions.uniform else _PLACES
         local = self._conditions.edge(time, places, before=before)
         rate = self._conditions.tension_rate(time, before=before)
@@ -272,7 +291,7 @@ class AdaptiveSolver(Solver):
         return profile, np.repeat(profile[:, :1], layout.nodes_of(self._table), axis=1)
 
     def _midpoints(self, time: float) -> np.ndarray:
-        """Local parameters at the midpoints as they are now and G, shape (8, nodes)."""
+        """Local parameters at the midpoints as they are now and G, shape (rows, nodes)."""
         profile, edge = self._parameters(time)
         if profile.shape[1] > 1:
             _, _, density = layout.fields(self._table[0])
@@ -300,6 +319,8 @@ class AdaptiveSolver(Solver):
             edge = self._midpoints(self.time)
             self._counters[drive.RATES] += 1
             drive.bend_history(
+                self._laws,
+                self._around,
                 self._control,
                 self._counters,
                 self._table,
@@ -329,6 +350,12 @@ class AdaptiveSolver(Solver):
             "for its tension, which the model does not cover",
         )
 
+    def _for_more_nodes(self) -> str:
+        """Return what would do where the nodes are too few: 4096 cannot be raised."""
+        return "raise " + (
+            "rtol" if self._max_nodes == resolution.NODE_COUNTS[-1] else "max_nodes or rtol"
+        )
+
     def _stuck(self, code: int) -> Breakdown:
         if code == drive.NO_ROOT:
             return self._no_root(self.time)
@@ -337,7 +364,7 @@ class AdaptiveSolver(Solver):
                 "unresolved",
                 self.time,
                 f"the edge at t = {self.time:.6g} needs more than max_nodes = {self._max_nodes} "
-                f"at rtol = {self._rtol:g}: raise max_nodes or rtol",
+                f"at rtol = {self._rtol:g}: {self._for_more_nodes()}",
             )
         return Breakdown(
             "step_too_small",

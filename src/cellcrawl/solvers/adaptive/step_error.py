@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.solvers.adaptive.rates import AREA, LENGTH, ORIGIN_X, ORIGIN_Y, TENSION
+from cellcrawl.solvers.adaptive.entries import AREA, LENGTH, ORIGIN_X, ORIGIN_Y, TENSION
 from cellcrawl.solvers.adaptive.staggered import HALO, sum_of_squares
 
 _TENSION_SCALE = 100.0

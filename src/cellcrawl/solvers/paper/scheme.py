@@ -10,17 +10,18 @@ import numpy as np
 from cellcrawl.errors import InputError
 from cellcrawl.linear import fastest_decay
 from cellcrawl.parameters import Conditions
-from cellcrawl.physics.force_balance import SOLVED, solve_off_rate
+from cellcrawl.physics.force_balance import SOLVED, solve_bonds
 from cellcrawl.solvers.base import (
     Breakdown,
     Frame,
     Solver,
-    pointwise_velocity_and_friction,
+    pointwise,
 )
 from cellcrawl.solvers.fixed_steps import ON_GRID, steps_towards
 from cellcrawl.solvers.paper import step as paper_step
 from cellcrawl.solvers.paper import tangent_angle
 from cellcrawl.starts.base import CellState
+from cellcrawl.surroundings.place import around, placed
 from cellcrawl.validation import real_number, whole_number
 
 _KEPT = 1e-4  # both are kept to rounding at the steps; between two they are interpolated
@@ -51,6 +52,9 @@ class PaperSolver(Solver):
         dt: float | None = None,
     ) -> None:
         self._conditions = conditions
+        self._laws = conditions.laws.compiled
+        self._surroundings = conditions.around()
+        self._around = around(self._surroundings, len(conditions.laws.rows), nodes)
         self._nodes = nodes
         self._dt = _checked_step(dt, nodes, conditions)
         self._anchor = time  # steps are counted from here: the start, or the last break
@@ -108,8 +112,10 @@ class PaperSolver(Solver):
         center = tangent_angle.centroid(length, area, cosine, sine, x, z)
         origin_x = float(scalars[paper_step.ORIGIN_X])
         origin_y = float(scalars[paper_step.ORIGIN_Y])
-        off_rate = np.exp(y)
-        velocity, friction = pointwise_velocity_and_friction(off_rate, n, edge)
+        tangent = (cosine, sine)
+        edge = placed(self._surroundings, time, x + origin_x, z + origin_y, tangent, edge)
+        laws, tension = self._conditions.laws, float(scalars[paper_step.TENSION])
+        off_rate, velocity, friction = pointwise(laws, y, n, tension, kappa, edge)
         return Frame(
             time=time,
             x=x + origin_x,
@@ -120,7 +126,7 @@ class PaperSolver(Solver):
             off_rate=off_rate,
             normal_velocity=velocity,
             friction=friction,
-            tension=float(scalars[paper_step.TENSION]),
+            tension=tension,
             length=length,
             area=area,
             centroid_x=center[0] + origin_x,
@@ -180,7 +186,8 @@ class PaperSolver(Solver):
         area = tangent_angle.enclosed_area(curve.length, cosine, sine, x, z)
         self._scalars[:] = (curve.length, start.tension, *curve.origin, area, gap)
         y[:] = math.log(self._conditions.at(self.time).r_p)
-        failed = solve_off_rate(y, n, start.tension, kappa, edge[1], edge[5], edge[4])
+        edge = self._placed(self.time, self._fields, self._scalars, edge)
+        failed = solve_bonds(self._laws, y, n, start.tension, kappa, edge)
         if failed != SOLVED:
             raise InputError(
                 f"the start has no off-rate r >= 1 that balances the forces at node {failed} "
@@ -193,13 +200,26 @@ class PaperSolver(Solver):
         edge = self._conditions.edge(self.time, self._nodes)
         rate = self._conditions.tension_rate(self.time)
         theta, n, y = self._fields
+        if self._around is not None:
+            self._around.local[:] = self._placed(self.time, self._fields, self._scalars, edge)
         for part in (steps - 1, 1):
             if part == 0:
                 continue
             if part == 1:
                 self._previous = (self.time, self._fields.copy(), self._scalars.copy())
             code, node, taken = paper_step.advance(
-                part, dt, rate, edge, theta, n, y, self._scalars, self._work
+                self._laws,
+                self._around,
+                self.time,
+                part,
+                dt,
+                rate,
+                edge,
+                theta,
+                n,
+                y,
+                self._scalars,
+                self._work,
             )
             self._steps += taken
             self._steps_from_anchor += taken
@@ -242,8 +262,24 @@ class PaperSolver(Solver):
         theta, n, y = fields
         kappa = np.empty_like(theta)
         tangent_angle.curvature(theta, scalars[paper_step.LENGTH], kappa)
-        solve_off_rate(y, n, scalars[paper_step.TENSION], kappa, edge[1], edge[5], edge[4])
+        edge = self._placed(time, fields, scalars, edge)
+        solve_bonds(self._laws, y, n, scalars[paper_step.TENSION], kappa, edge)
         return fields, scalars
+
+    def _placed(
+        self, time: float, fields: np.ndarray, scalars: np.ndarray, edge: np.ndarray
+    ) -> np.ndarray:
+        """Return the parameters at the nodes from those far from all surroundings."""
+        if self._surroundings is None:
+            return edge
+        theta, length = fields[0], float(scalars[paper_step.LENGTH])
+        kappa, x, z = np.empty((3, theta.size))
+        tangent_angle.curvature(theta, length, kappa)
+        cosine, sine = np.cos(theta), np.sin(theta)
+        tangent_angle.points(length, cosine, sine, kappa, x, z)
+        x += scalars[paper_step.ORIGIN_X]
+        z += scalars[paper_step.ORIGIN_Y]
+        return placed(self._surroundings, time, x, z, (cosine, sine), edge)
 
 
 def _checked_step(dt: Any, nodes: int, conditions: Conditions) -> float:

@@ -1,21 +1,22 @@
 """One time step of the paper's scheme, and many.
 
-State: tangent angle ``theta``, bound fraction ``n`` and ``y = log r`` at the nodes, and the scalars
-length, tension, position of node 0 and area. The area is that of the shape, so the Euler step of
-``sigma_t = G A_t`` keeps ``sigma - G A`` to rounding. Every step ends with the outline closed
-again: angle and length advance apart, and nothing in their equations takes a gap away.
+State: tangent angle ``theta``, bound fraction ``n`` and ``y``, the force on a bond, at the nodes,
+and the scalars length, tension, position of node 0 and area. The area is that of the shape, so that
+the Euler step of ``sigma_t = G A_t`` keeps ``sigma - G A`` to rounding. Every step ends with the
+outline closed again: angle and length advance apart, and nothing in their equations takes a gap
+away.
 """
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.physics.exponential import exponential
-from cellcrawl.physics.force_balance import SOLVED, solve_off_rate
-from cellcrawl.physics.laws import edge_velocity
+from cellcrawl.laws.functions import binding, off_rate, partials, velocity
+from cellcrawl.physics.force_balance import SOLVED, solve_bonds
 from cellcrawl.solvers.cyclic import solve_cyclic_tridiagonal
 from cellcrawl.solvers.paper.tangent_angle import (
     central_difference,
@@ -25,28 +26,30 @@ from cellcrawl.solvers.paper.tangent_angle import (
     points,
     tangential_velocity,
 )
+from cellcrawl.surroundings.place import surround_edge
 
 LENGTH, TENSION, ORIGIN_X, ORIGIN_Y, AREA, CLOSURE = range(6)  # rows of `scalars`
 STEPPED = 0
 NO_ROOT = 1
 NOT_FINITE = 2
-WORK_ROWS = 18
+WORK_ROWS = 20
 
 
 @kernel
 def crank_nicolson(
     n: np.ndarray,
-    r: np.ndarray,
+    bind: np.ndarray,
+    loss: np.ndarray,
     tangential: np.ndarray,
     spacing: float,
     dt: float,
-    r_on: np.ndarray,
     diffusivity: np.ndarray,
     work: np.ndarray,
 ) -> None:
-    """Advance ``n_t = r_on (1 - n) - r n + D n_ss + T n_s`` by ``dt`` in place; ``r``, ``T`` held.
+    """Advance ``n_t = B(n) + D n_ss + T n_s`` by ``dt`` in place; off-rate and ``T`` are held.
 
-    ``work`` has shape (6, nodes).
+    ``bind`` is the binding ``B`` at ``n`` and ``loss`` its slope, less than 0. ``work`` has shape
+    (6, nodes).
     """
     nodes = n.size
     lower, diagonal, upper, right = work[0], work[1], work[2], work[3]
@@ -56,11 +59,11 @@ def crank_nicolson(
         drift = half * tangential[i] / (2.0 * spacing)
         lower[i] = drift - spread
         upper[i] = -drift - spread
-        diagonal[i] = 1.0 + half * (r_on[i] + r[i]) + 2.0 * spread
-    for i in range(nodes):
+        diagonal[i] = 1.0 - half * loss[i] + 2.0 * spread
         before = n[i - 1] if i > 0 else n[nodes - 1]
         after = n[i + 1] if i < nodes - 1 else n[0]
-        right[i] = (2.0 - diagonal[i]) * n[i] - lower[i] * before - upper[i] * after + dt * r_on[i]
+        right[i] = (1.0 - half * loss[i] - 2.0 * spread) * n[i] + dt * bind[i]
+        right[i] -= lower[i] * before + upper[i] * after
     solve_cyclic_tridiagonal(lower, diagonal, upper, right, work[4:6])
     for i in range(nodes):
         n[i] = right[i]
@@ -68,6 +71,9 @@ def crank_nicolson(
 
 @kernel
 def advance(
+    laws: Any,
+    around: Any,
+    time: float,
     steps: int,
     dt: float,
     tension_rate: float,
@@ -78,9 +84,12 @@ def advance(
     scalars: np.ndarray,
     work: np.ndarray,
 ) -> tuple[int, int, int]:
-    """Take up to ``steps`` steps in place.
+    """Take up to ``steps`` steps in place, from ``time``.
 
-    ``edge`` has shape (7, nodes): r_on, zeta_1, D, epsilon, h, sigma_c, v_p. ``work`` has shape
+    ``around`` is None, or surroundings at work, as in `cellcrawl.surroundings.place`; it then holds
+    the parameters where the edge is at ``time``.
+
+    ``edge`` holds the law's parameters, shape (rows, nodes); ``work`` has shape
     (WORK_ROWS, nodes).
 
     Returns
@@ -94,26 +103,28 @@ def advance(
         Steps taken.
     """
     nodes = theta.size
-    r_on, zeta_1, diffusivity = edge[0], edge[1], edge[2]
-    epsilon, h, sigma_c, v_p = edge[3], edge[4], edge[5], edge[6]
-    kappa, velocity, slope, tangential = work[0], work[1], work[2], work[3]
+    kappa, speed, slope, tangential = work[0], work[1], work[2], work[3]
     x, z, cosine, sine, r = work[4], work[5], work[6], work[7], work[8]
     new_theta, new_n, new_y, spare = work[9], work[10], work[11], work[12:18]
+    bind, loss = work[18], work[19]
     new = scalars.copy()
+    local = edge
+    if around is not None:
+        local = around.local
     for step in range(steps):
         length = scalars[LENGTH]
-        for i in range(nodes):
-            r[i] = exponential(y[i])
-            velocity[i] = edge_velocity(y[i], r[i], v_p[i], epsilon[i])
         curvature(theta, length, kappa)
-        central_difference(velocity, length / nodes, 0.0, slope)
-        growth = tangential_velocity(kappa, velocity, length, tangential, spare)
+        for i in range(nodes):
+            r[i] = off_rate(laws, y[i], local, i)
+            speed[i] = velocity(laws, y[i], r[i], scalars[TENSION], kappa[i], local, i)
+        central_difference(speed, length / nodes, 0.0, slope)
+        growth = tangential_velocity(kappa, speed, length, tangential, spare)
 
         for i in range(nodes):
             new_theta[i] = theta[i] + dt * (tangential[i] * kappa[i] - slope[i])
         new[LENGTH] = length + dt * length * growth
-        new[ORIGIN_X] = scalars[ORIGIN_X] + dt * velocity[0] * math.sin(theta[0])
-        new[ORIGIN_Y] = scalars[ORIGIN_Y] - dt * velocity[0] * math.cos(theta[0])
+        new[ORIGIN_X] = scalars[ORIGIN_X] + dt * speed[0] * math.sin(theta[0])
+        new[ORIGIN_Y] = scalars[ORIGIN_Y] - dt * speed[0] * math.cos(theta[0])
         if not (0.0 < new[LENGTH] < np.inf):
             return NOT_FINITE, 0, step
 
@@ -128,11 +139,20 @@ def advance(
         new[TENSION] = scalars[TENSION] + tension_rate * (new[AREA] - scalars[AREA])
 
         new_n[:] = n
-        crank_nicolson(new_n, r, tangential, new[LENGTH] / nodes, dt, r_on, diffusivity, spare)
+        for i in range(nodes):
+            bind[i] = binding(laws, y[i], r[i], n[i], local, i)
+            _, _, _, _, _, _, _, _, loss[i] = partials(laws, y[i], r[i], n[i], 0.0, 0.0, local, i)
+        spacing = new[LENGTH] / nodes
+        crank_nicolson(new_n, bind, loss, tangential, spacing, dt, local[2], spare)
         new_y[:] = y
         if not (math.isfinite(new[TENSION]) and math.isfinite(new_n.sum() + kappa.sum())):
             return NOT_FINITE, _first_not_finite(new_n, kappa), step
-        failed = solve_off_rate(new_y, new_n, new[TENSION], kappa, zeta_1, sigma_c, h)
+        if around is not None:
+            for i in range(nodes):
+                x[i] += new[ORIGIN_X]
+                z[i] += new[ORIGIN_Y]
+            surround_edge(around, time + (step + 1) * dt, x, z, cosine, sine, edge)
+        failed = solve_bonds(laws, new_y, new_n, new[TENSION], kappa, local)
         if failed != SOLVED:
             return NO_ROOT, failed, step
 

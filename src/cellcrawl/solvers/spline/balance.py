@@ -1,22 +1,21 @@
 """Velocities from the force balance, and the tension in step with the off-rate it causes.
 
-Kernels use the paper's letters: ``n`` bound fraction, ``y = log r``, ``sigma`` tension. ``edge``
-has shape (7, markers): r_on, zeta_1, D, epsilon, h, sigma_c, v_p.
+Kernels use the paper's letters: ``n`` bound fraction, ``y`` force on a bond, ``sigma`` tension.
+``edge`` holds the law's parameters, shape (rows, markers).
 """
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.physics.exponential import exponential
-from cellcrawl.physics.force_balance import SOLVED, solve_off_rate
-from cellcrawl.physics.laws import binding_rate, edge_velocity, friction_slope
+from cellcrawl.laws.functions import binding, off_rate, partials, velocity
+from cellcrawl.physics.force_balance import SOLVED, solve_bonds
 from cellcrawl.solvers.spline.outline import KAPPA, LOG_R, SPEED, XU, YU, N, X, Y
 
-R_ON, ZETA_1, _, EPSILON, H, SIGMA_C, V_P = range(7)  # rows of `edge`
 BALANCED, NO_ROOT, NOT_FINITE, NEGATIVE, UNSETTLED = range(5)
 _TOLERANCE = 1e-12  # of the tension, relative
 _MOST_ITERATIONS = 25
@@ -24,11 +23,11 @@ _MOST_ITERATIONS = 25
 
 @kernel
 def solve_balance(
-    fields: np.ndarray, sigma: float, shape: np.ndarray, edge: np.ndarray
+    laws: Any, fields: np.ndarray, sigma: float, shape: np.ndarray, edge: np.ndarray
 ) -> tuple[int, int]:
     """Off-rate of every marker in place from its last value; a code and the marker it is about."""
     y, n, kappa = fields[LOG_R], fields[N], shape[KAPPA]
-    failed = solve_off_rate(y, n, sigma, kappa, edge[ZETA_1], edge[SIGMA_C], edge[H])
+    failed = solve_bonds(laws, y, n, sigma, kappa, edge)
     if failed == SOLVED:
         return BALANCED, 0
     for i in range(n.size):
@@ -39,6 +38,7 @@ def solve_balance(
 
 @kernel
 def solve_tension(
+    laws: Any,
     fields: np.ndarray,
     guess: float,
     known: float,
@@ -55,19 +55,18 @@ def solve_tension(
     y, n = fields[LOG_R], fields[N]
     sigma = guess
     for _ in range(_MOST_ITERATIONS):
-        code, marker = solve_balance(fields, sigma, shape, edge)
+        code, marker = solve_balance(laws, fields, sigma, shape, edge)
         if code != BALANCED:
             return code, marker, sigma
         area_rate = slope = 0.0
         for i in range(n.size):
-            r = exponential(y[i])
-            epsilon, g = edge[EPSILON, i], shape[SPEED, i]
-            area_rate += g * edge_velocity(y[i], r, edge[V_P, i], epsilon)
-            # the slope of the retrograde velocity is that of the friction without linkers
-            yielding = friction_slope(y[i], r, 0.0, 0.0) / friction_slope(
-                y[i], r, n[i], edge[ZETA_1, i]
+            r = off_rate(laws, y[i], edge, i)
+            g, kappa = shape[SPEED, i], shape[KAPPA, i]
+            area_rate += g * velocity(laws, y[i], r, sigma, kappa, edge, i)
+            by_phi, _, by_sigma, _, u_phi, u_sigma, _, _, _ = partials(
+                laws, y[i], r, n[i], sigma, kappa, edge, i
             )
-            slope -= g * epsilon * yielding * (1.0 + shape[KAPPA, i] * edge[H, i])
+            slope += g * (u_sigma - u_phi * by_sigma / by_phi)
         change = (known + weight * area_rate - sigma) / (1.0 - weight * slope)
         if abs(change) <= _TOLERANCE * (1.0 + abs(sigma)):
             return BALANCED, 0, sigma
@@ -77,7 +76,9 @@ def solve_tension(
 
 @kernel
 def rates(
+    laws: Any,
     fields: np.ndarray,
+    sigma: float,
     shape: np.ndarray,
     edge: np.ndarray,
     out: np.ndarray,
@@ -86,33 +87,38 @@ def rates(
     y, n = fields[LOG_R], fields[N]
     area_rate = 0.0
     for i in range(n.size):
-        r = exponential(y[i])
-        velocity = edge_velocity(y[i], r, edge[V_P, i], edge[EPSILON, i])
-        per_speed = velocity / shape[SPEED, i]
+        r = off_rate(laws, y[i], edge, i)
+        speed = velocity(laws, y[i], r, sigma, shape[KAPPA, i], edge, i)
+        per_speed = speed / shape[SPEED, i]
         out[X, i] = per_speed * shape[YU, i]
         out[Y, i] = -per_speed * shape[XU, i]
-        out[N, i] = binding_rate(n[i], r, edge[R_ON, i])
-        area_rate += velocity * shape[SPEED, i]
+        out[N, i] = binding(laws, y[i], r, n[i], edge, i)
+        area_rate += speed * shape[SPEED, i]
     return area_rate
 
 
 @kernel
 def fastest_explicit_rate(
-    fields: np.ndarray, sigma: float, shape: np.ndarray, edge: np.ndarray, zigzag: float
+    laws: Any,
+    fields: np.ndarray,
+    sigma: float,
+    shape: np.ndarray,
+    edge: np.ndarray,
+    zigzag: float,
 ) -> float:
     """Bound on the decay rates that are stepped explicitly: curvature smoothing and binding.
 
     A shape wave of height 1 from marker to marker has a curvature of ``zigzag / g**2``.
     """
     y, n = fields[LOG_R], fields[N]
-    smoothing = binding = 0.0
+    smoothing = losing = 0.0
     for i in range(n.size):
-        r = exponential(y[i])
+        r = off_rate(laws, y[i], edge, i)
         g = shape[SPEED, i]
-        yielding = friction_slope(y[i], r, 0.0, 0.0) / friction_slope(
-            y[i], r, n[i], edge[ZETA_1, i]
+        by_phi, _, _, by_kappa, u_phi, _, u_kappa, _, b_n = partials(
+            laws, y[i], r, n[i], sigma, shape[KAPPA, i], edge, i
         )
-        pull = edge[EPSILON, i] * edge[H, i] * abs(sigma) * yielding
+        pull = abs(u_kappa - u_phi * by_kappa / by_phi)
         smoothing = max(smoothing, zigzag * pull / (g * g))
-        binding = max(binding, edge[R_ON, i] + r)
-    return smoothing + binding
+        losing = max(losing, -b_n)
+    return smoothing + losing

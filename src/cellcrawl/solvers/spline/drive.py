@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +19,8 @@ from cellcrawl.solvers.spline.outline import (
     SHAPE_ROWS,
     XU,
     YU,
+    X,
+    Y,
     copy,
     enclose,
     measure,
@@ -27,6 +30,7 @@ from cellcrawl.solvers.spline.outline import (
 from cellcrawl.solvers.spline.periodic import ZIGZAG
 from cellcrawl.solvers.spline.remeshing import SPREAD_ROWS, remesh
 from cellcrawl.solvers.spline.runge_kutta import EXPLICIT_LIMIT, between_ends, step
+from cellcrawl.surroundings.place import surround_edge
 
 # `scalars`: the tangent's angle at the first marker, continuous; the area the tension goes with
 TENSION, ANGLE, AREA = range(3)
@@ -40,12 +44,14 @@ LARGEST_TURN = 1.5  # radians from marker to marker beyond which a shape is not 
 LARGEST_PARTS = 20_000
 _RETRIES = 3  # each splits the step four times as fine
 
-EDGE_ROWS = 7
-WORK_ROWS = SHAPE_ROWS + EDGE_ROWS + 4 + max(LINKER_ROWS, SPREAD_ROWS)
+WORK_ROWS = SHAPE_ROWS + 4 + max(LINKER_ROWS, SPREAD_ROWS)
 
 
 @kernel
 def advance(
+    laws: Any,
+    around: Any,
+    time: float,
     steps: int,
     dt: float,
     varies: bool,
@@ -59,9 +65,11 @@ def advance(
     slopes: np.ndarray,
     work: np.ndarray,
 ) -> tuple[int, int, int]:
-    """Take up to ``steps`` steps of ``dt`` in place.
+    """Take up to ``steps`` steps of ``dt`` in place, from ``time``.
 
-    ``fields`` has shape (4, markers): x, y, n, log r; ``ends`` (2, 7, markers) and
+    ``around`` is None, or surroundings at work, as in `cellcrawl.surroundings.place`.
+
+    ``fields`` has shape (4, markers): x, y, n, log r; ``ends`` (2, rows, markers) and
     ``tension_rates`` (2,) are the parameters at both ends of the call, which differ only if
     ``varies`` (then ``steps`` is 1); ``slopes`` has shape
     (STAGES, 4, markers) and ``work`` (WORK_ROWS, markers). ``before_fields`` and ``before_scalars``
@@ -77,8 +85,8 @@ def advance(
         Steps taken.
     """
     shape = work[:SHAPE_ROWS]
-    edge = work[SHAPE_ROWS : SHAPE_ROWS + EDGE_ROWS]
-    spare = work[SHAPE_ROWS + EDGE_ROWS :]
+    spare = work[SHAPE_ROWS:]
+    edge = np.empty(ends.shape[1:])
     measure(fields, shape)
     for taken in range(steps):
         copy(fields, before_fields)
@@ -88,7 +96,12 @@ def advance(
         if unevenness(shape) > UNEVEN:
             remesh(fields, shape, spare)
             enclose(scalars[AREA], fields, shape)
-            code, marker = solve_balance(fields, scalars[TENSION], shape, edge)
+            local = edge
+            if around is not None:
+                now = time + taken * dt
+                surround_edge(around, now, fields[X], fields[Y], shape[XU], shape[YU], edge)
+                local = around.local
+            code, marker = solve_balance(laws, fields, scalars[TENSION], shape, local)
             if code != BALANCED:
                 copy(before_fields, fields)
                 return code, marker, taken
@@ -97,7 +110,12 @@ def advance(
         turn, marker = sharpest_turn(shape)
         if turn > LARGEST_TURN:
             return UNRESOLVED, marker, taken
-        rate = fastest_explicit_rate(fields, scalars[TENSION], shape, edge, ZIGZAG)
+        local = edge
+        if around is not None:
+            now = time + taken * dt
+            surround_edge(around, now, fields[X], fields[Y], shape[XU], shape[YU], edge)
+            local = around.local
+        rate = fastest_explicit_rate(laws, fields, scalars[TENSION], shape, local, ZIGZAG)
         if not rate * dt < EXPLICIT_LIMIT * LARGEST_PARTS:
             return TOO_STIFF, marker, taken
         parts = math.floor(rate * dt / EXPLICIT_LIMIT) + 1
@@ -106,6 +124,9 @@ def advance(
             tension, area = scalars[TENSION], scalars[AREA]
             for part in range(parts):
                 code, marker, tension, area = step(
+                    laws,
+                    around,
+                    time + (taken + part / parts) * dt,
                     dt / parts,
                     part / parts,
                     (part + 1) / parts,

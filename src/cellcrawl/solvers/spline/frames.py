@@ -7,11 +7,28 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cellcrawl.solvers.base import Frame, pointwise_velocity_and_friction
+from cellcrawl.laws.law import Law
+from cellcrawl.solvers.base import Frame, pointwise
 from cellcrawl.solvers.spline import balance, outline
 from cellcrawl.solvers.spline.linkers import DIFFUSIVITY, LINKER_ROWS, second_derivative_after
 from cellcrawl.solvers.spline.outline import LOG_R, N, X, Y
 from cellcrawl.solvers.spline.remeshing import SPREAD_ROWS, spread_evenly
+from cellcrawl.surroundings.base import CompiledSurroundings
+from cellcrawl.surroundings.place import placed
+
+
+class World(NamedTuple):
+    """Laws and surroundings."""
+
+    laws: Law
+    around: CompiledSurroundings | None
+
+    def placed(
+        self, time: float, fields: np.ndarray, shape: np.ndarray, edge: np.ndarray
+    ) -> np.ndarray:
+        """Return the parameters at the markers from those far from all."""
+        tangent = (shape[outline.XU], shape[outline.YU])
+        return placed(self.around, time, fields[X], fields[Y], tangent, edge)
 
 
 class State(NamedTuple):
@@ -40,13 +57,15 @@ def on_even_nodes(fields: np.ndarray) -> np.ndarray:
 
 
 def rates_of_change(
-    state: State, edge: np.ndarray, tension_rate: float
+    world: World, state: State, edge: np.ndarray, tension_rate: float
 ) -> tuple[np.ndarray, float]:
     """Return the rates of x, y and n at the markers, shape (3, markers), and of the tension."""
     fields, shape = state.fields.copy(), measured(state.fields)
-    balance.solve_balance(fields, state.tension, shape, edge)
+    laws = world.laws.compiled
+    edge = world.placed(state.time, fields, shape, edge)
+    balance.solve_balance(laws, fields, state.tension, shape, edge)
     rates, curved = np.empty((3, fields.shape[1])), np.empty(fields.shape[1])
-    area_rate = balance.rates(fields, shape, edge, rates)
+    area_rate = balance.rates(laws, fields, state.tension, shape, edge, rates)
     spare = np.empty((LINKER_ROWS, fields.shape[1]))
     second_derivative_after(fields, edge, 0.0, shape, curved, spare)
     rates[N] += edge[DIFFUSIVITY] * curved
@@ -82,7 +101,7 @@ def inside_step(
     return State(time, fields, tension, rest * first.angle + part * last.angle)
 
 
-def frame(state: State, edge: np.ndarray) -> Frame:
+def frame(world: World, state: State, edge: np.ndarray) -> Frame:
     """Return the cell on equally spaced nodes, in balance with the parameters ``edge``.
 
     Length, area and centroid are those of the scheme's own markers.
@@ -91,20 +110,23 @@ def frame(state: State, edge: np.ndarray) -> Frame:
     even = on_even_nodes(markers)
     even_shape = measured(even)
     balanced = even.copy()
-    code, _ = balance.solve_balance(balanced, state.tension, even_shape, edge)
+    edge = world.placed(state.time, even, even_shape, edge)
+    code, _ = balance.solve_balance(world.laws.compiled, balanced, state.tension, even_shape, edge)
     if code == balance.BALANCED:  # or a jump of the parameters left none: keep that of before
         even = balanced
-    off_rate = np.exp(even[LOG_R])
     theta = np.unwrap(np.arctan2(even_shape[outline.YU], even_shape[outline.XU]))
     theta += 2.0 * math.pi * round((state.angle - theta[0]) / (2.0 * math.pi))
-    velocity, friction = pointwise_velocity_and_friction(off_rate, even[N], edge)
+    kappa = even_shape[outline.KAPPA]
+    off_rate, velocity, friction = pointwise(
+        world.laws, even[LOG_R], even[N], state.tension, kappa, edge
+    )
     center = outline.centroid(markers, shape)
     return Frame(
         time=state.time,
         x=even[X],
         y=even[Y],
         theta=theta,
-        curvature=even_shape[outline.KAPPA],
+        curvature=kappa,
         bound_fraction=even[N],
         off_rate=off_rate,
         normal_velocity=velocity,

@@ -10,12 +10,15 @@ in ``sigma - G A``, and nothing takes them away.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from cellcrawl._compile import kernel
 from cellcrawl.solvers.spline.balance import BALANCED, rates, solve_balance, solve_tension
 from cellcrawl.solvers.spline.linkers import DIFFUSIVITY, second_derivative_after
-from cellcrawl.solvers.spline.outline import LOG_R, N, X, Y, copy, enclose, measure
+from cellcrawl.solvers.spline.outline import LOG_R, XU, YU, N, X, Y, copy, enclose, measure
+from cellcrawl.surroundings.place import surround_edge
 
 STAGES = 4
 EXPLICIT_LIMIT = 2.5  # step times decay rate; the explicit part alone is stable up to 3.66
@@ -59,6 +62,9 @@ def between_ends(ends: np.ndarray, part: float, out: np.ndarray) -> None:
 
 @kernel
 def step(
+    laws: Any,
+    around: Any,
+    time: float,
     dt: float,
     begin: float,
     end: float,
@@ -77,9 +83,13 @@ def step(
 
     Parameters
     ----------
+    around
+        None, or surroundings at work, as in `cellcrawl.surroundings.place`.
+    time : float
+        At the beginning of the step.
     begin, end : float
         Where the step lies between the times of ``ends`` and ``tension_rates``, if ``varies``.
-    ends : array, shape (2, 7, markers)
+    ends : array, shape (2, rows, markers)
         Parameters along the edge, linear in time between the two.
     tension_rates : array, shape (2,)
         ``G`` likewise.
@@ -87,7 +97,7 @@ def step(
         The area is the one that goes with the tension: ``dA = d sigma / G``.
     shape : array, shape (SHAPE_ROWS, markers)
         The `measure` of the markers before and after.
-    edge : array, shape (7, markers)
+    edge : array, shape (rows, markers)
         The parameters now; left at those of the end.
     slopes : array, shape (STAGES, 4, markers)
     work : array, shape (4 + LINKER_ROWS, markers)
@@ -113,18 +123,26 @@ def step(
         if i > 0:
             _combine(dt, i, fields, slopes, stage)
             measure(stage, shape)
-        second_derivative_after(stage, edge, implicit, shape, own[SPREADING], spare)
+        local = edge
+        if around is not None:
+            surround_edge(
+                around, time + _TIMES[i] * dt, stage[X], stage[Y], shape[XU], shape[YU], edge
+            )
+            local = around.local
+        second_derivative_after(stage, local, implicit, shape, own[SPREADING], spare)
         for node in range(stage.shape[1]):
-            own[SPREADING, node] *= edge[DIFFUSIVITY, node]
+            own[SPREADING, node] *= local[DIFFUSIVITY, node]
             stage[N, node] += implicit * own[SPREADING, node]
         if i > 0:
             known = tension
             for j in range(i):
                 known += dt * _IMPLICIT[i, j] * tension_slopes[j]
-            code, marker, sigma = solve_tension(stage, sigma, known, implicit * rate, shape, edge)
+            code, marker, sigma = solve_tension(
+                laws, stage, sigma, known, implicit * rate, shape, local
+            )
             if code != BALANCED:
                 return code, marker, tension, area
-        area_slopes[i] = rates(stage, shape, edge, own)
+        area_slopes[i] = rates(laws, stage, sigma, shape, local, own)
         tension_slopes[i] = rate * area_slopes[i]
 
     for j in range(STAGES):
@@ -138,7 +156,11 @@ def step(
     measure(fields, shape)
     enclose(area, fields, shape)
     copy(stage[LOG_R:], fields[LOG_R:])
-    code, marker = solve_balance(fields, tension, shape, edge)
+    local = edge
+    if around is not None:
+        surround_edge(around, time + dt, fields[X], fields[Y], shape[XU], shape[YU], edge)
+        local = around.local
+    code, marker = solve_balance(laws, fields, tension, shape, local)
     return code, marker, tension, area
 
 

@@ -15,6 +15,7 @@ from cellcrawl.solvers.spline import balance, drive, frames, outline
 from cellcrawl.solvers.spline.outline import LOG_R, N, X, Y
 from cellcrawl.solvers.spline.runge_kutta import STAGES
 from cellcrawl.starts.base import CellState
+from cellcrawl.surroundings.place import around
 from cellcrawl.validation import real_number, whole_number
 
 _USUAL_NODES = 512
@@ -47,6 +48,9 @@ class SplineSolver(Solver):
         dt: float = _USUAL_STEP,
     ) -> None:
         self._conditions = conditions
+        self._laws = conditions.laws.compiled
+        self._world = frames.World(conditions.laws, conditions.around())
+        self._around = around(self._world.around, len(conditions.laws.rows), nodes)
         self._nodes = self.checked_nodes(nodes)
         self._dt = real_number("dt", dt, 1e-7, 0.1)
         self._anchor = time  # steps are counted from here: the start, or the last break
@@ -93,7 +97,7 @@ class SplineSolver(Solver):
         return None
 
     def frame(self, time: float) -> Frame:
-        return frames.frame(self._at(time), self._conditions.edge(time, self._nodes))
+        return frames.frame(self._world, self._at(time), self._conditions.edge(time, self._nodes))
 
     def points(self, time: float) -> np.ndarray:
         even = frames.on_even_nodes(self._at(time).fields)
@@ -154,7 +158,8 @@ class SplineSolver(Solver):
                 f"{self._nodes} nodes are too few for this start: its edge turns by {turn:.2g} "
                 f"radians from node to node at node {marker}; give more nodes"
             )
-        code, marker = balance.solve_balance(fields, start.tension, shape, edge)
+        edge = self._world.placed(self.time, fields, shape, edge)
+        code, marker = balance.solve_balance(self._laws, fields, start.tension, shape, edge)
         if code != balance.BALANCED:
             raise InputError(
                 f"the start has no off-rate r >= 1 that balances the forces at node {marker} "
@@ -172,6 +177,9 @@ class SplineSolver(Solver):
         if varies:
             rates[1] = conditions.tension_rate(end, before=True)
         code, marker, taken = drive.advance(
+            self._laws,
+            self._around,
+            now,
             steps,
             dt,
             varies,
@@ -199,10 +207,10 @@ class SplineSolver(Solver):
         self._anchor, self._steps_from_anchor, self.time = end, 0, end
         fields = self._fields
         shape = frames.measured(fields)
-        edge = self._conditions.edge(end, self._nodes)
+        edge = self._world.placed(end, fields, shape, self._conditions.edge(end, self._nodes))
         kept = fields[LOG_R].copy()
         code, marker = balance.solve_balance(
-            fields, float(self._scalars[drive.TENSION]), shape, edge
+            self._laws, fields, float(self._scalars[drive.TENSION]), shape, edge
         )
         if code == balance.BALANCED:
             return None
@@ -221,9 +229,13 @@ class SplineSolver(Solver):
         first = frames.State(self._before_time, self._before_fields, tension, angle)
         conditions, nodes = self._conditions, self._nodes
         first_rates = frames.rates_of_change(
-            first, conditions.edge(first.time, nodes), conditions.tension_rate(first.time)
+            self._world,
+            first,
+            conditions.edge(first.time, nodes),
+            conditions.tension_rate(first.time),
         )
         last_rates = frames.rates_of_change(
+            self._world,
             last,
             conditions.edge(last.time, nodes, before=True),
             conditions.tension_rate(last.time, before=True),

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cellcrawl.physics.force_balance import SOLVED, balance, solve_off_rate
+from cellcrawl.physics.slip_bond import SOLVED, balance, solve_off_rate
 from tests.strategies import parameters
 
 NODES = 40

@@ -1,0 +1,170 @@
+"""The functions of a law that kernels call; each takes the law first.
+
+``edge`` holds the local parameters, shape (rows, nodes), in the order of the law's ``rows``, and
+``i`` is the node. What each law makes of them is registered by `cellcrawl.laws.compiled`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+from numba.core import types
+from numba.core.datamodel import models
+from numba.core.imputils import lower_constant
+from numba.extending import (
+    NativeValue,
+    overload,
+    register_model,
+    unbox,
+)
+
+from cellcrawl._compile import inlined_kernel
+from cellcrawl.laws import expressions
+from cellcrawl.physics.exponential import exponential, growth
+
+_OPTIONS: Final[Any] = {
+    "error_model": "numpy",
+    "forceinline": True,
+    "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+    "fastmath": {"contract"},
+}
+_registered: dict[str, dict[str, Callable[..., Any]]] = {}
+
+
+class LawType(types.Opaque):
+    """Numba's type of a compiled law; the name tells laws apart."""
+
+
+register_model(LawType)(models.OpaqueModel)
+
+
+class Compiled:
+    """What `LawType` is the type of."""
+
+    def __init__(self, key: str) -> None:
+        self.key = key
+        self._numba_type_ = LawType(key)  # where dispatch from Python looks first
+
+
+@unbox(LawType)  # type: ignore[no-untyped-call, untyped-decorator]
+def _unboxed(kind: LawType, value: Any, context: Any) -> NativeValue:
+    return NativeValue(context.context.get_dummy_value())  # type: ignore[no-untyped-call]
+
+
+@lower_constant(LawType)  # type: ignore[no-untyped-call, untyped-decorator]
+def _constant(context: Any, builder: Any, kind: LawType, value: Any) -> Any:
+    return context.get_dummy_value()
+
+
+@inlined_kernel
+def _choose(condition: bool, if_true: float, if_false: float) -> float:
+    return if_true if condition else if_false
+
+
+_power = inlined_kernel(expressions.power)
+_IN_KERNELS: Final[dict[str, Any]] = {
+    "__name__": "cellcrawl.laws.functions",
+    "exp": exponential,
+    "growth": growth,
+    "log": math.log,
+    "sqrt": math.sqrt,
+    "sin": math.sin,
+    "cos": math.cos,
+    "tanh": math.tanh,
+    "choose": _choose,
+    "power": _power,
+}
+
+
+def register(key: str, source: str, also: Mapping[str, Any] | None = None) -> None:
+    """Make the functions in ``source``, which may call ``also``, known to kernels under a key."""
+    if key not in _registered:
+        space = {**_IN_KERNELS, **(also or {})}
+        exec(source, space)
+        names = [line.split("(")[0][4:] for line in source.splitlines() if line.startswith("def ")]
+        _registered[key] = {name: space[name] for name in names}
+
+
+def _by_law(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Let kernels call what the law in the first argument has under this function's name."""
+    name = function.__name__
+
+    def chosen(laws: Any, *arguments: Any) -> Any:
+        return _registered[laws.name][name] if isinstance(laws, LawType) else None
+
+    overload(function, jit_options=_OPTIONS, strict=False)(chosen)
+    return function
+
+
+@_by_law
+def off_rate(laws: Any, phi: float, edge: Any, i: int) -> float:
+    """Off-rate of a bond that bears ``phi``."""
+    raise NotImplementedError
+
+
+@_by_law
+def renewed_rate(laws: Any, r: float, phi: float, step: float, edge: Any, i: int) -> float:
+    """Off-rate at ``phi``, where it was ``r`` a short step (below 0.12) before."""
+    raise NotImplementedError
+
+
+@_by_law
+def nearly_renewed_rate(laws: Any, r: float, phi: float, step: float, edge: Any, i: int) -> float:
+    """Off-rate at ``phi``, where it was ``r`` a tiny step (below 4e-6) before."""
+    raise NotImplementedError
+
+
+@_by_law
+def balance(
+    laws: Any, phi: float, r: float, n: float, sigma: float, kappa: float, edge: Any, i: int
+) -> tuple[float, float, float]:
+    """Friction less pull, its slope and its bend in ``phi``."""
+    raise NotImplementedError
+
+
+@_by_law
+def velocity(
+    laws: Any, phi: float, r: float, sigma: float, kappa: float, edge: Any, i: int
+) -> float:
+    """Outward normal velocity of the edge."""
+    raise NotImplementedError
+
+
+@_by_law
+def friction(laws: Any, phi: float, r: float, n: float, edge: Any, i: int) -> float:
+    """Friction on the ground."""
+    raise NotImplementedError
+
+
+@_by_law
+def binding(laws: Any, phi: float, r: float, n: float, edge: Any, i: int) -> float:
+    """Rate of change of ``n`` at a material point, without diffusion."""
+    raise NotImplementedError
+
+
+@_by_law
+def partials(
+    laws: Any, phi: float, r: float, n: float, sigma: float, kappa: float, edge: Any, i: int
+) -> tuple[float, float, float, float, float, float, float, float, float]:
+    """Slopes: balance by phi, n, sigma, kappa; velocity by phi, sigma, kappa; binding by phi, n."""
+    raise NotImplementedError
+
+
+@_by_law
+def surround(
+    around: Any,
+    data: Any,
+    time: float,
+    x: float,
+    y: float,
+    normal_x: float,
+    normal_y: float,
+    edge: Any,
+    local: Any,
+    i: int,
+) -> int:
+    """Fill what surroundings change of the local parameters of a node, from those in ``edge``."""
+    raise NotImplementedError
