@@ -61,8 +61,8 @@ def tracks(
 ) -> None:
     """Draw a sheet about the tracks in FILE: modes, headings, turns, displacements, directions.
 
-    FILE is what `cellcrawl classify` takes; of outlines of one frame, which make no tracks, sizes and
-    shapes are drawn. Left and right are those seen on the screen.
+    FILE is what `cellcrawl classify` takes; of outlines of one frame, which make no tracks, sizes
+    and shapes are drawn. Left and right are those seen on the screen.
 
     \b
     Examples

@@ -96,7 +96,7 @@ def _draw_spread(ax: Axes, name: str, values: np.ndarray) -> None:
     ax.plot(values, height, "o", color=TRACK, markersize=2.5, alpha=0.8)
     ax.axvline(float(np.median(values)), color=RIM, linewidth=0.8)
     ax.set_ylim(0.0, 1.2 * max(float(height.max()), 2.0))
-    ax.set_xlabel(f"{name}, median {np.median(values):.3g}")
+    ax.set_xlabel(f"{name}, median {np.median(values):.4g}")
     ax.set_ylabel("cells")
     ax.yaxis.set_major_locator(MaxNLocator(3, integer=True))
     ax.xaxis.set_major_locator(MaxNLocator(5))
