@@ -372,6 +372,7 @@ def _calls(folder: Path) -> Iterator[Call]:
         times=True, colormap="magma", ax=ax(),
     )  # fmt: skip
     yield call(plot.tracks, tracks=read, results=[cc.classify(long)], title="one", examples=1)
+    yield call(plot.outlines, given=observed.outlines[:2], title="two")
     yield call(
         plot.compare_tracks, series={"a": read, "b": read},
         results={name: [cc.classify(long)] for name in "ab"},

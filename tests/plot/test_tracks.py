@@ -73,3 +73,17 @@ def test_a_table_becomes_a_sheet_in_one_command(tmp_path, capsys, command):
     assert "2 rotational" in said
     assert (tmp_path / "cells-tracks.png").stat().st_size > 1000
     assert run([command, str(tmp_path / "none.csv")]) == 2
+
+
+def test_outlines_of_one_frame_have_a_sheet_of_their_own(tmp_path, capsys):
+    film = cc.observe(circling(0.4, radius=3.0), pixel=0.1)
+    file = cc.write_outlines(tmp_path / "c_cp_outlines.txt", film.outlines[:1], pixel=0.1)
+    assert run(["tracks", str(file)]) == 0
+    said = capsys.readouterr().out
+    assert "cellpose" in said
+    assert "the sheet is about the outlines" in said
+    assert (tmp_path / "c_cp_outlines-tracks.png").stat().st_size > 0
+    figure = cc.plot.outlines(film.outlines)
+    areas = next(axes for axes in figure.axes if axes.get_xlabel().startswith("area"))
+    np.testing.assert_allclose(areas.lines[0].get_xdata(), np.pi, rtol=0.03)
+    figure.canvas.draw()

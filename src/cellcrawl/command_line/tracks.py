@@ -61,7 +61,8 @@ def tracks(
 ) -> None:
     """Draw a sheet about the tracks in FILE: modes, headings, turns, displacements, directions.
 
-    FILE is what `cellcrawl classify` takes. Left and right are those seen on the screen.
+    FILE is what `cellcrawl classify` takes; of outlines of one frame, which make no tracks, sizes
+    and shapes are drawn. Left and right are those seen on the screen.
 
     \b
     Examples
@@ -85,7 +86,14 @@ def draw_sheet(
     """Read tracks, say what was read, name and draw them."""
     import cellcrawl as cc
 
-    given = _tracks(file, reading or {})
+    try:
+        given = _tracks(file, reading or {})
+    except InputError:
+        alone = None if beside else _outlines_of_one_frame(file, reading or {})
+        if alone is None:
+            raise
+        _save(alone, output or file.with_name(f"{file.stem}-tracks.png"), dpi)
+        return
     for line in given.lines():
         say(line)
     given = told_of_drift(given, remove_drift)
@@ -100,6 +108,20 @@ def draw_sheet(
         tracks = "1 track" if len(given) == 1 else f"{len(given)} tracks"
         figure = cc.plot.tracks(given, results, title=f"{file.name}: {tracks}")
     _save(figure, output or file.with_name(f"{file.stem}-tracks.png"), dpi)
+
+
+def _outlines_of_one_frame(file: Path, reading: dict[str, Any]) -> Figure | None:
+    """Return a sheet of outlines that make no tracks, or None if the file holds no outlines."""
+    import cellcrawl as cc
+
+    known = ("frame_interval", "pixel_size")
+    try:
+        given = cc.read_outlines(file, **{name: reading.get(name) for name in known})
+    except InputError:
+        return None
+    say(given.summary())
+    say("one outline a cell: no paths to draw, so the sheet is about the outlines")
+    return cc.plot.outlines(given, title=f"{file.name}: {len(given)} outlines")
 
 
 def _tracks(file: Path, reading: dict[str, Any]) -> Tracks:
@@ -118,17 +140,22 @@ def _tracks(file: Path, reading: dict[str, Any]) -> Tracks:
 
 def _named(given: Tracks, cell_radius: float | None) -> list[Classification | None]:
     """Name all tracks; say of those without a name how many and why."""
+    from cellcrawl.modes import FEWEST_RECORDS
+
     results: list[Classification | None] = []
     reasons: dict[str, list[str]] = {}
     for named in classify_all(given, cell_radius):
         results.append(named.result)
         if named.result is None:
-            reasons.setdefault(named.reason, []).append(named.track)
+            short = len(given[named.track]) < FEWEST_RECORDS
+            reason = f"fewer than {FEWEST_RECORDS} records" if short else named.reason
+            reasons.setdefault(reason, []).append(named.track)
     found = [result for result in results if result is not None]
     counts = {mode: sum(r.mode == mode for r in found) for mode in {r.mode for r in found}}
     say("modes    " + (", ".join(f"{counts[mode]} {mode}" for mode in sorted(counts)) or "none"))
     for reason, those in list(reasons.items())[:5]:
-        say(f"not named: {', '.join(those[:5])}{' ...' if len(those) > 5 else ''}: {reason}")
+        some = f" and {len(those) - 5} more" if len(those) > 5 else ""
+        say(f"not named: {', '.join(those[:5])}{some}: {reason}")
     return results
 
 

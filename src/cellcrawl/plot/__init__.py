@@ -17,6 +17,7 @@ from cellcrawl.plot.dispersion import dispersion
 from cellcrawl.plot.flat_edge import flat_edge
 from cellcrawl.plot.growth import growth
 from cellcrawl.plot.kymograph import kymograph, kymographs
+from cellcrawl.plot.outlines import outlines
 from cellcrawl.plot.path import path, paths
 from cellcrawl.plot.stability import stability
 from cellcrawl.plot.style import styled
@@ -36,6 +37,7 @@ __all__ = [
     "kymograph",
     "kymographs",
     "measure_map",
+    "outlines",
     "path",
     "paths",
     "regimes",

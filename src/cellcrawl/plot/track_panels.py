@@ -29,7 +29,6 @@ LEFT, RIGHT = "#d1495b", "#1f77b4"
 """Colours of turns, to the side seen on the screen."""
 UNNAMED = "#cccccc"
 _MOST_DRAWN = 400
-_MOST_FITTED = 40
 _SECTORS = 24
 _FEWEST_FITTED = 20
 
@@ -83,10 +82,11 @@ def draw_paths(
     if together:
         ax.axhline(0.0, color=RIM, linewidth=0.4, zorder=0)
         ax.axvline(0.0, color=RIM, linewidth=0.4, zorder=0)
-    _scale_bar(ax, half, tracks[0].length_units)
+    draw_scale_bar(ax, half, tracks[0].length_units)
 
 
-def _scale_bar(ax: Axes, half: float, units: str, *, small: bool = False) -> None:
+def draw_scale_bar(ax: Axes, half: float, units: str, *, small: bool = False) -> None:
+    """Draw a bar of a round length, at most half the half width of the panel."""
     size = round_length(0.5 * half)
     ax.add_artist(
         AnchoredSizeBar(
@@ -186,12 +186,10 @@ def draw_displacement(ax: Axes, tracks: Sequence[Track]) -> PersistentWalk | Non
 
 
 def fitted_walk(tracks: Sequence[Track]) -> PersistentWalk | None:
-    """Fit one persistent walk to the tracks that are long enough, forty of them at most."""
-    long = sorted(
-        (track for track in tracks if len(track) >= _FEWEST_FITTED), key=len, reverse=True
-    )
+    """Fit one persistent walk to those of the drawn tracks that are long enough."""
+    chosen = [tracks[i] for i in drawn(tracks) if len(tracks[i]) >= _FEWEST_FITTED]
     try:
-        return persistent_walk(long[:_MOST_FITTED]) if long else None
+        return persistent_walk(chosen) if chosen else None
     except InputError:
         return None
 
@@ -224,7 +222,7 @@ def draw_turns(
     path.set_axis_off()
     half = 0.5 * float(max(np.ptp(seen.x), np.ptp(seen.y)))
     if half > 0.0:
-        _scale_bar(path, half, track.length_units, small=True)
+        draw_scale_bar(path, half, track.length_units, small=True)
     mode = f"{result.mode} {result.confidence:.2f}" if result else "not named"
     path.set_title(f"{name}  {mode}".strip(), color=on(path, INK))
     if len(seen) < 8 or (result is not None and result.mode == "stationary"):

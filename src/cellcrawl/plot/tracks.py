@@ -111,6 +111,8 @@ def tracks(
         drift = shared_drift(given)
         lines = [title or f"{_counted(len(given))}, {given.t.size} records"]
         lines += [str(drift).split(";")[0]] if drift.noticed else []
+        untold = not (given.source.length_units and given.source.time_units)
+        lines += ["lengths and times in the units of the file, which does not tell them"] * untold
         figure.suptitle("\n".join(lines), x=0.01, ha="left")
     return figure
 
@@ -218,5 +220,7 @@ def _told(fit: PersistentWalk | None, track: Track) -> str:
         return "too short for a fit"
     length, time = shown_units(track.length_units), shown_units(track.time_units)
     over = f" {length}/{time}" if length and time else ""
+    if track.time_units.startswith("1/"):  # a rate's inverse: length times the rate
+        over = f" {length} {time.replace('1/', '', 1)}"
     persistence = f"{fit.time} {time}".rstrip() if fit.time.high < 1e6 * fit.time.value else "long"
     return f"persistence {persistence}, S = {fit.speed}{over}"
