@@ -31,8 +31,8 @@ def readable(path: Path) -> Iterator[None]:
     except MemoryError as error:
         raise StorageError(f"cannot read {path}: {error or 'there is not enough memory'}") from None
     except Exception as error:
-        number = getattr(error, "errno", None)
-        if number and not path.is_dir():
+        number = getattr(error, "errno", None)  # some libraries put words there
+        if isinstance(number, int) and number > 0 and not path.is_dir():
             raise StorageError(f"cannot read {path}: {os.strerror(number)}") from None
         raise damaged(path, _told(path, str(error).lower())) from None
 

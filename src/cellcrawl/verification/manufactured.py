@@ -78,7 +78,7 @@ class Manufactured(Conditions):
         sigma_c = pull - self.tension(time) * (1.0 + p.h / size)
         v_p = outward / p.epsilon + r * np.log(r)
         held = [np.full(nodes, value) for value in (p.zeta_1, p.D, p.epsilon, p.h)]
-        return np.ascontiguousarray([r_on, *held, sigma_c, v_p])
+        return np.ascontiguousarray([r_on, *held, sigma_c, v_p, np.zeros(nodes)])  # no pressure
 
     @property
     def uniform(self) -> bool:
