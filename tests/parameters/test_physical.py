@@ -63,7 +63,7 @@ def test_keratocyte_speed_period_and_tension_are_right():
 def test_round_trip_is_exact_to_rounding(case):
     p, s = case
     there = cell.from_dimensionless(p, s)
-    assert same(there.dimensionless(), p)
+    assert same(there.dimensionless(), p, ulps=64)  # short numbers are taken as meant
     assert there.elasticity == p.elasticity
     assert same(there.scales, s)
     assert same(cell.from_dimensionless(there.dimensionless(), there.scales), there, ulps=40)

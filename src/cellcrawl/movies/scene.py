@@ -78,7 +78,9 @@ class Scene:
 
     def _build(self, size: tuple[int, int]) -> None:
         dpi = _DPI_OF_480_LINES * min(size) / 480.0
-        figure = Figure(figsize=(size[0] / dpi, size[1] / dpi), dpi=dpi)
+        # a part of a pixel more, which older canvases cut off and newer ones round away
+        inches = ((size[0] + 0.25) / dpi, (size[1] + 0.25) / dpi)
+        figure = Figure(figsize=inches, dpi=dpi)
         canvas: Any = FigureCanvasAgg(figure)
         self._canvas = canvas
         self._ax = figure.add_axes((0.0, _STRIP, 1.0, 1.0 - _STRIP), xticks=[], yticks=[])
