@@ -78,8 +78,8 @@ class Scene:
 
     def _build(self, size: tuple[int, int]) -> None:
         dpi = _DPI_OF_480_LINES * min(size) / 480.0
-        # a part of a pixel more, which older canvases cut off and newer ones round away
-        inches = ((size[0] + 0.25) / dpi, (size[1] + 0.25) / dpi)
+        # a bit of a pixel more, which canvases cut off: some would cut 119.99.. off to 119
+        inches = ((size[0] + 1e-3) / dpi, (size[1] + 1e-3) / dpi)
         figure = Figure(figsize=inches, dpi=dpi)
         canvas: Any = FigureCanvasAgg(figure)
         self._canvas = canvas
