@@ -31,7 +31,7 @@ CASES: dict[str, dict[str, Any]] = {
     "soft ground": {"laws": cc.laws.Stiffness(chi=0.9)},
     "polymerisation under load": {"laws": cc.laws.PolymerizationUnderLoad(stall=5000.0)},
     "swept myosin": {"laws": cc.laws.SweptMyosin(sweep=0.2)},
-    "stripes": {"surroundings": cc.surroundings.Stripes(period=3.0, between=0.7, edge=0.3)},
+    "stripes": {"surroundings": cc.surroundings.Stripes(period=3.0, between=0.4, edge=0.2)},
     "force": {"surroundings": cc.surroundings.UniformForce(x=0.5)},
     "walls far away": {"surroundings": cc.surroundings.Walls(SQUARE, room=True)},
 }
