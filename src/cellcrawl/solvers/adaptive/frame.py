@@ -39,7 +39,7 @@ _ROWS: Final = ("x", "y", "theta", "curvature", "bound_fraction", "off_rate")
 _VELOCITY, _FRICTION = 6, 7
 _CLEARLY = 0.1  # in cell radii: far more than the edge does between two midpoints
 _NEWTON_STEPS = 5
-_SETTLED = 1e-9  # a Newton step this short leaves its square
+_SETTLED = 2e-5  # a Newton step this short leaves a tenth of its square
 _SCALES: Final = np.array(
     [
         (-1.0) ** (TAPS - 1 - tap) / (math.factorial(tap) * math.factorial(TAPS - 1 - tap))
