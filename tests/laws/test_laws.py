@@ -130,6 +130,18 @@ def test_a_law_is_named_by_its_formulas_not_by_its_numbers():
     assert Stiffness().compiled.digest != PAPER.compiled.digest
 
 
+def test_laws_that_call_one_number_by_two_names_are_two():
+    class Softness(Stiffness):
+        give = Parameter(1.0, 0.001, 1.0, "what Stiffness calls chi, after it")
+
+    class Hardness(Stiffness):
+        hold = Parameter(1.0, 0.001, 1.0, "what Stiffness calls chi, after it")
+
+    for law in (Softness(chi=0.4), Hardness(chi=0.4)):
+        assert law.compiled.rows == law.rows
+        assert law.compiled.evaluate("friction", state(law)) > 0.0
+
+
 def test_a_law_whose_formulas_have_changed_is_told():
     content = {**ForceOnRate().describe(), "formulas": "0" * 16}
     with pytest.raises(cc.InputError, match="its formulas have changed"):

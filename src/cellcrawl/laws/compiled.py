@@ -52,9 +52,12 @@ class Formulas(NamedTuple):
 class CompiledLaw(Compiled):
     """A law set as an argument of kernels; has no data."""
 
-    def __init__(self, name: str, digest: str, rows: tuple[str, ...], formulas: Formulas) -> None:
-        self.name, self.digest, self.rows, self.formulas = name, digest, rows, formulas
-        self.source = _source(formulas, rows)
+    def __init__(
+        self, name: str, digest: str, source: str, rows: tuple[str, ...], formulas: Formulas
+    ) -> None:
+        self.name, self.digest, self.source = name, digest, source
+        self.rows, self.formulas = rows, formulas
+        self._functions: dict[str, Any] = {}
         super().__init__(f"{name}_{digest}")
         register(self.key, self.source)
 
@@ -66,7 +69,9 @@ class CompiledLaw(Compiled):
 
         Derivatives are total in ``phi``: the off-rate goes with it.
         """
-        return self._function(what)(values)
+        if what not in self._functions:
+            self._functions[what] = self._function(what)
+        return self._functions[what](values)
 
     def _function(self, what: str) -> Any:
         name, _, by = what.partition("/")
@@ -99,10 +104,10 @@ def compiled(law: Law) -> CompiledLaw:
     """Return a law for kernels: one object for all laws of the same formulas."""
     formulas = _traced(law)
     source = _source(formulas, law.rows)
-    digest = hashlib.sha256(source.encode()).hexdigest()[:16]
+    digest = hashlib.sha256(f"{law.rows}\n{source}".encode()).hexdigest()[:16]
     found = _made.get(digest)
     if found is None:
-        found = _made[digest] = CompiledLaw(law.name, digest, law.rows, formulas)
+        found = _made[digest] = CompiledLaw(law.name, digest, source, law.rows, formulas)
     return found
 
 

@@ -73,13 +73,23 @@ class Described:
         return type(self)(**{**self.values, **values})
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name != "compiled"}
+        return {
+            name: value
+            for name, value in self.__dict__.items()
+            if name not in ("compiled", "_hash")
+        }
 
     def __eq__(self, other: object) -> bool:
+        if self is other:
+            return True
         return isinstance(other, Described) and self.describe() == other.describe()
 
-    def __hash__(self) -> int:
+    @functools.cached_property
+    def _hash(self) -> int:
         return hash(repr(self.describe()))
+
+    def __hash__(self) -> int:
+        return self._hash
 
     def __repr__(self) -> str:
         given = ", ".join(f"{name}={value:g}" for name, value in self.values.items())
