@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -246,3 +248,21 @@ def test_a_cell_at_rest_has_not_turned_by_nan(capsys):
     said = capsys.readouterr().out
     assert "at rest" in said
     assert "nan" not in said
+
+
+def test_info_tells_the_laws_and_surroundings_of_a_run(tmp_path, capsys):
+    around = cc.surroundings.Stripes(period=1.5)
+    path = tmp_path / "run.nc"
+    cc.simulate(cc.Parameters(), 0.2, output=path).close()
+    run(["info", str(path)])
+    assert "laws:" not in capsys.readouterr().out
+    made = cc.open_run(path).load()
+    world = {
+        "laws": json.dumps(cc.laws.Stiffness(chi=0.5).describe()),
+        "surroundings": json.dumps(cc.surroundings.Surroundings([around]).describe()),
+    }
+    made.assign_attrs(**world).to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
+    run(["info", str(tmp_path / "other.nc")])
+    told = capsys.readouterr().out
+    assert "laws: cellcrawl.laws.stiffness:Stiffness (chi = 0.5)" in told
+    assert "surroundings: cellcrawl.surroundings.patterns:Stripes (period = 1.5" in told

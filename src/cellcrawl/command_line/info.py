@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -44,6 +44,11 @@ def info(file: Path) -> None:
             values = decode_attribute(dataset, name)
             shown = ", ".join(f"{item} = {_short(value)}" for item, value in values.items())
             say(f"{name}: {shown or 'none'}")
+        if "laws" in attributes:
+            say(f"laws: {_described(decode_attribute(dataset, 'laws'))}")
+        if "surroundings" in attributes:
+            around = decode_attribute(dataset, "surroundings")
+            say(f"surroundings: {'; '.join(map(_described, around))}")
         say(
             f"records: {dataset.sizes['time']} from t = {float(dataset['time'][0]):g} to "
             f"{float(dataset['time'][-1]):g}, every {attributes['save_every']:g}; "
@@ -70,6 +75,12 @@ def _say_sweep(found: Sweep) -> None:
     listed = ", ".join(f"{name} = {value}" for name, value in shared.items())
     say(f"shared   {listed or 'the usual parameters'}, t_end = {grid.t_end:g}, {grid.solver}")
     say(f"keeps    {found.keep}: read them with cellcrawl.open_sweep")
+
+
+def _described(content: dict[str, Any]) -> str:
+    """Return a law or a surrounding with its numbers, though its class may not be here."""
+    values = ", ".join(f"{name} = {_short(value)}" for name, value in content["values"].items())
+    return f"{content['kind']} ({values})" if values else str(content["kind"])
 
 
 def _short(value: object) -> str:
