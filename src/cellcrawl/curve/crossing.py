@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cellcrawl._compile import exact_kernel, woven_exact_kernel
+from cellcrawl._compile import kernel, woven_kernel
 from cellcrawl.curve.orientation import orientation
 
 _RUN = 16
@@ -55,7 +55,7 @@ def first_crossing(points: np.ndarray) -> Crossing | None:
     return _meeting(points, i, j)
 
 
-@exact_kernel
+@kernel
 def crossing_edges(x: np.ndarray, y: np.ndarray) -> tuple[int, int]:
     """Return the indices of two edges that meet, (-1, -1) if the closed polygon is simple."""
     nodes = x.size
@@ -94,7 +94,7 @@ def crossing_edges(x: np.ndarray, y: np.ndarray) -> tuple[int, int]:
     return _NONE, _NONE
 
 
-@exact_kernel
+@kernel
 def _advances(x: np.ndarray, y: np.ndarray, start: int, stop: int) -> bool:
     """Whether all edges start <= i < stop (past the end: wrapped) advance along their chord."""
     nodes = x.size
@@ -110,7 +110,7 @@ def _advances(x: np.ndarray, y: np.ndarray, start: int, stop: int) -> bool:
     return True
 
 
-@exact_kernel
+@kernel
 def _meet(
     x: np.ndarray, y: np.ndarray, start: int, stop: int, first: int, last: int
 ) -> tuple[int, int]:
@@ -131,14 +131,14 @@ def _meet(
     return _NONE, _NONE
 
 
-@exact_kernel
+@kernel
 def _folds(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> bool:
     """Whether edge b-c runs back over edge a-b."""
     ahead = (bx - ax) * (cx - bx) + (by - ay) * (cy - by)
     return ahead <= 0.0 and orientation(ax, ay, bx, by, cx, cy) == 0
 
 
-@woven_exact_kernel
+@woven_kernel
 def _touch(
     ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
 ) -> bool:

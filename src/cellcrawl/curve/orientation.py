@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcrawl._compile import exact_kernel, woven_exact_kernel
+from cellcrawl._compile import kernel, woven_kernel
 
 _FILTER = 3.3306690738754716e-16  # (3 + 16 u) u: above it the rounded determinant has the sign
 _SPLIT = 134217729.0  # 2**27 + 1 splits a double into two halves
 
 
-@exact_kernel
+@kernel
 def orientation(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
     """+1 if a, b, c turn left, -1 if they turn right, 0 if they lie on one line: always exact."""
     left = (ax - cx) * (by - cy)
@@ -25,7 +25,7 @@ def orientation(ax: float, ay: float, bx: float, by: float, cx: float, cy: float
     return _exact_sign(ax, ay, bx, by, cx, cy)
 
 
-@woven_exact_kernel
+@woven_kernel
 def _exact_sign(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
     expansion = np.zeros(12)
     size = 0
@@ -39,7 +39,7 @@ def _exact_sign(ax: float, ay: float, bx: float, by: float, cx: float, cy: float
     return 0
 
 
-@woven_exact_kernel
+@woven_kernel
 def _product(a: float, b: float) -> tuple[float, float]:
     """Return ``a * b`` rounded, and its exact error."""
     high = a * b
@@ -53,7 +53,7 @@ def _product(a: float, b: float) -> tuple[float, float]:
     return high, low
 
 
-@woven_exact_kernel
+@woven_kernel
 def _grow(expansion: np.ndarray, size: int, value: float) -> int:
     """Add ``value`` to a non-overlapping expansion in place; return its new size."""
     carry = value

@@ -29,7 +29,6 @@ _OPTIONS: Final[Any] = {
     "forceinline": True,
     "no_cpython_wrapper": True,
     "no_cfunc_wrapper": True,
-    "fastmath": {"contract"},
 }
 _registered: dict[str, dict[str, Callable[..., Any]]] = {}
 
