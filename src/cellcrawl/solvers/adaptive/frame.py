@@ -15,7 +15,6 @@ from cellcrawl._compile import kernel
 from cellcrawl.curve.fourier import BEFORE, TAPS
 from cellcrawl.laws.functions import friction, off_rate, velocity
 from cellcrawl.physics.force_balance import SOLVED, bond_force, solve_bonds
-from cellcrawl.solvers.adaptive import state as layout
 from cellcrawl.solvers.adaptive.differences import interpolate
 from cellcrawl.solvers.adaptive.entries import FIELDS, LENGTH, ORIGIN_X, ORIGIN_Y, SCALARS, TENSION
 from cellcrawl.solvers.adaptive.mesh import places
@@ -75,10 +74,10 @@ def shape_between(time: float, steps: float, order: int, table: np.ndarray) -> S
     ``table`` holds the state and its backward differences. The edge closes and has the area of the
     tension law to rounding.
     """
-    state = np.empty(table.shape[1])
-    work = np.empty((TRACE_ROWS, layout.nodes_of(state) + 2 * HALO))
+    size = table.shape[1]
+    state, work = np.empty(size), np.empty((TRACE_ROWS, (size - SCALARS) // FIELDS))
     area, x, y, gap, excess, clearance = edge_shape(steps, order, table, state, work)
-    scalars = layout.scalars(state).tolist()
+    scalars = state[-SCALARS:].tolist()
     whole = Instant(
         time=time,
         tension=scalars[TENSION],

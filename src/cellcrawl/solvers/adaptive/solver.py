@@ -67,6 +67,7 @@ class AdaptiveSolver(Solver):
         self._placed = place.around(self._compiled_surroundings, rows, self._nodes)
         self._constant: np.ndarray | None = None  # parameters of a run in which none changes
         self._rtol = real_number("rtol", rtol, 1e-10, 1e-2)
+        self._tolerance, self._allowed = _local_tolerance(self._rtol), _grid_tolerance(self._rtol)
         counts = resolution.NODE_COUNTS
         self._max_nodes = whole_number("max_nodes", max_nodes, counts[0], counts[-1])
         self._min_nodes = whole_number("min_nodes", min_nodes, counts[0], self._max_nodes)
@@ -97,7 +98,6 @@ class AdaptiveSolver(Solver):
 
     def advance(self, target: float) -> Breakdown | None:
         self._measured = None
-        tolerance, allowed = _local_tolerance(self._rtol), _grid_tolerance(self._rtol)
         control, counters = self._control, self._counters
         while control[drive.TIME] < target:
             now = self.time
@@ -110,9 +110,9 @@ class AdaptiveSolver(Solver):
                 self._around,
                 target,
                 end,
-                tolerance,
+                self._tolerance,
                 _STEPS_PER_CALL,
-                allowed,
+                self._allowed,
                 self._min_nodes,
                 self._max_nodes,
                 control,
@@ -129,7 +129,7 @@ class AdaptiveSolver(Solver):
             if code == drive.AT_BREAK:
                 counters[drive.RESTARTING] = 1
             elif code == drive.CHECK_NODES:
-                self._fit_grid(allowed)
+                self._fit_grid()
             elif code in (drive.NO_ROOT, drive.STEP_TOO_SMALL, drive.UNRESOLVED):
                 return self._stuck(code)
         return None
@@ -146,11 +146,11 @@ class AdaptiveSolver(Solver):
         """Return the edge at ``time``, measured once."""
         if self._measured is not None and self._measured.instant.time == time:
             return self._measured
-        first, last = self._control[drive.PREVIOUS_TIME], self.time
+        first, last = self._control[drive.PREVIOUS_TIME], self._control[drive.TIME]
         if not first <= time <= last:
             raise ValueError(f"t = {time} is not within the last step, from {first} to {last}")
         steps = (time - last) / self._control[drive.STEP]
-        shape = shape_between(time, steps, int(self._counters[drive.ORDER]), self._table)
+        shape = shape_between(time, steps, self._counters[drive.ORDER], self._table)
         closure, area = shape.mended
         self._tally[3] = max(self._tally[3], closure)
         self._tally[4] = max(self._tally[4], area)
@@ -206,7 +206,7 @@ class AdaptiveSolver(Solver):
         curve = start.curve
         density = np.ones(curve.nodes)
         waves = slopes(curve.theta - layout.winding(curve.nodes), start.bound_fraction, density)
-        allowed = resolution.allowance(_grid_tolerance(self._rtol), 0.0, False)
+        allowed = resolution.allowance(self._allowed, 0.0, False)
         if resolution.missed_on(waves, curve.nodes) > 3.0 * allowed:
             raise InputError(
                 f"the start is not resolved on {curve.nodes} nodes at rtol = {self._rtol:g}: "
@@ -254,7 +254,7 @@ class AdaptiveSolver(Solver):
         return drive.restart(
             self._laws,
             self._around,
-            _local_tolerance(self._rtol),
+            self._tolerance,
             self._control,
             self._counters,
             self._table,
@@ -267,7 +267,7 @@ class AdaptiveSolver(Solver):
 
     def _next_parameters(self, now: float, end: float) -> tuple[np.ndarray, bool]:
         """Parameters at the end of the next step, and whether they are moving."""
-        if not self._conditions.varies(now, end):
+        if self._constant is not None or not self._conditions.varies(now, end):
             return self._parameters(now), False
         h = drive.bounded_step(self._control[drive.STEP], now, end)
         if h == end - now:
@@ -292,12 +292,12 @@ class AdaptiveSolver(Solver):
             self._constant = profile
         return profile
 
-    def _fit_grid(self, allowed: float) -> None:
+    def _fit_grid(self) -> None:
         """Go on with as many nodes as the spectrum asks for."""
         control, counters = self._control, self._counters
         table, log_rate = self._table, self._log_rate
         wanted = wanted_nodes(
-            allowed, self._min_nodes, self._max_nodes, control, counters, table, log_rate.size
+            self._allowed, self._min_nodes, self._max_nodes, control, counters, table, log_rate.size
         )
         if wanted == log_rate.size:
             return
