@@ -66,3 +66,14 @@ def test_a_movie_shows_the_ground(view):
         for one in (bare, run)
     ]
     assert np.abs(frames[0].astype(int) - frames[1]).max() > 20
+
+
+def test_a_run_whose_surrounding_is_not_here_is_drawn_bare_with_a_warning():
+    run = surrounded(cc.surroundings.Stripes())
+    told = run.attrs["surroundings"]
+    strange = told.replace("cellcrawl.surroundings.patterns", "no_such_module")
+    assert strange != told
+    with pytest.warns(UserWarning, match="surroundings are not drawn: .*no_such_module"):
+        axes = cc.plot.path(run.assign_attrs(surroundings=strange))
+    assert not ground_of(axes)
+    assert axes.lines

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any, Final
 
 import numpy as np
@@ -11,6 +12,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.image import AxesImage
 
 from cellcrawl.data import decode_attribute
+from cellcrawl.errors import InputError
 from cellcrawl.laws import as_law
 from cellcrawl.laws.law import PAPER
 from cellcrawl.laws.rest import local_values
@@ -28,13 +30,20 @@ _PATTERNED: Final = ("r_on", "zeta_1", "chi", "D", "sigma_c")
 def draw_ground(
     ax: Axes, run: xr.Dataset, low: np.ndarray, high: np.ndarray, pixels: int = _PIXELS
 ) -> AxesImage | None:
-    """Draw what surrounds a run between two corners, with room to spare; None if nothing does."""
+    """Draw what surrounds a run between two corners, with room to spare; None if nothing does.
+
+    Surroundings whose class is not on this machine are left out with a warning.
+    """
     if "surroundings" not in run.attrs:
         return None
     spare = 0.5 * float(np.max(high - low))
     left, bottom = low - spare
     right, top = high + spare
-    picture = _picture(run, (left, right), (bottom, top), pixels)
+    try:
+        picture = _picture(run, (left, right), (bottom, top), pixels)
+    except InputError as error:
+        warnings.warn(f"the surroundings are not drawn: {error}", UserWarning, stacklevel=2)
+        return None
     limits = ax.get_xlim(), ax.get_ylim()
     image = ax.imshow(
         picture,
