@@ -199,7 +199,6 @@ class PaperSolver(Solver):
         """Take ``steps`` steps of ``dt``, keeping the state before the last."""
         edge = self._conditions.edge(self.time, self._nodes)
         rate = self._conditions.tension_rate(self.time)
-        theta, n, y = self._fields
         if self._around is not None:
             self._around.local[:] = self._placed(self.time, self._fields, self._scalars, edge)
         for part in (steps - 1, 1):
@@ -207,20 +206,7 @@ class PaperSolver(Solver):
                 continue
             if part == 1:
                 self._previous = (self.time, self._fields.copy(), self._scalars.copy())
-            code, node, taken = paper_step.advance(
-                self._laws,
-                self._around,
-                self.time,
-                part,
-                dt,
-                rate,
-                edge,
-                theta,
-                n,
-                y,
-                self._scalars,
-                self._work,
-            )
+            code, node, taken = self._kernel(part, dt, rate, edge)
             self._steps += taken
             self._steps_from_anchor += taken
             self.time = self._step_time(self._steps_from_anchor)
@@ -228,6 +214,27 @@ class PaperSolver(Solver):
                 self._previous = None
                 return self._breakdown(code, node, dt, edge)
         return None
+
+    def _kernel(
+        self, steps: int, dt: float, rate: float, edge: np.ndarray
+    ) -> tuple[int, int, int]:
+        """Take steps in place; return a code, the node it is about and the steps taken."""
+        theta, n, y = self._fields
+        code, node, taken = paper_step.advance(
+            self._laws,
+            self._around,
+            self.time,
+            steps,
+            dt,
+            rate,
+            edge,
+            theta,
+            n,
+            y,
+            self._scalars,
+            self._work,
+        )
+        return code, node, taken
 
     def _breakdown(self, code: int, node: int, dt: float, edge: np.ndarray) -> Breakdown:
         time = self.time + dt
