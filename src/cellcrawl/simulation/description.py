@@ -74,7 +74,7 @@ class RunDescription:
             object.__setattr__(self, name, value)
         _check_options(scheme, table("options", self.options))
         check_records(self.t_end, self.save_every)
-        if "dt" in self.options:
+        if self.options.get("dt") is not None:
             _check_steps(self.t_end, self.options["dt"])
 
     @property

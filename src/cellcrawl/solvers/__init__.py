@@ -9,8 +9,7 @@ from cellcrawl.solvers.spline import SplineSolver
 from cellcrawl.solvers.stochastic import StochasticSolver
 
 SOLVERS: dict[str, type[Solver]] = {
-    solver.name: solver
-    for solver in (AdaptiveSolver, PaperSolver, SplineSolver, StochasticSolver)
+    solver.name: solver for solver in (AdaptiveSolver, PaperSolver, SplineSolver, StochasticSolver)
 }
 
 __all__ = ["SOLVERS", "Breakdown", "Frame", "Instant", "Solver"]

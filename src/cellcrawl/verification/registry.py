@@ -22,6 +22,7 @@ from cellcrawl.verification import (
     invariants,
     laws,
     long_runs,
+    noise,
     orders,
     restart,
 )
@@ -53,6 +54,9 @@ CHECKS: Final[tuple[Check, ...]] = (
     Check("spectra", "laws", laws.spectra),
     Check("drifts", "laws", laws.drifts),
     Check("limits", "laws", laws.limits),
+    Check("bond-noise", "laws", noise.spectrum),
+    Check("noise-at-rest", "laws", noise.at_rest),
+    Check("many-bonds", "laws", noise.many_bonds),
     Check("breathing", "claims-linear", claims_linear.breathing),
     Check("translation", "claims-linear", claims_linear.translation),
     Check("dispersion", "claims-linear", claims_linear.dispersion),

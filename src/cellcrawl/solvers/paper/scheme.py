@@ -215,9 +215,7 @@ class PaperSolver(Solver):
                 return self._breakdown(code, node, dt, edge)
         return None
 
-    def _kernel(
-        self, steps: int, dt: float, rate: float, edge: np.ndarray
-    ) -> tuple[int, int, int]:
+    def _kernel(self, steps: int, dt: float, rate: float, edge: np.ndarray) -> tuple[int, int, int]:
         """Take steps in place; return a code, the node it is about and the steps taken."""
         theta, n, y = self._fields
         code, node, taken = paper_step.advance(
@@ -267,11 +265,17 @@ class PaperSolver(Solver):
         fields = fields + part * (self._fields - fields)
         scalars = scalars + part * (self._scalars - scalars)
         theta, n, y = fields
+        n[:] = self._linkers_between(part, self._previous[1][1])
         kappa = np.empty_like(theta)
         tangent_angle.curvature(theta, scalars[paper_step.LENGTH], kappa)
         edge = self._placed(time, fields, scalars, edge)
         solve_bonds(self._laws, y, n, scalars[paper_step.TENSION], kappa, edge)
         return fields, scalars
+
+    def _linkers_between(self, part: float, before: np.ndarray) -> np.ndarray:
+        """Bound fraction in the last step, from that ``before`` it."""
+        between: np.ndarray = before + part * (self._fields[1] - before)
+        return between
 
     def _placed(
         self, time: float, fields: np.ndarray, scalars: np.ndarray, edge: np.ndarray

@@ -72,9 +72,11 @@ class StochasticSolver(PaperSolver):
             "bound_fractions_cut_off": cut,
         }
 
-    def _kernel(
-        self, steps: int, dt: float, rate: float, edge: np.ndarray
-    ) -> tuple[int, int, int]:
+    def _linkers_between(self, part: float, before: np.ndarray) -> np.ndarray:
+        """Those of the nearer end: a mean of both would vary less than either."""
+        return self._fields[1] if part >= 0.5 else before
+
+    def _kernel(self, steps: int, dt: float, rate: float, edge: np.ndarray) -> tuple[int, int, int]:
         theta, n, y = self._fields
         code, node, taken = noisy_step.advance(
             self._laws,

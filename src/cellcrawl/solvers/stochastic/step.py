@@ -137,9 +137,7 @@ def slopes_of(
         r = off_rate(laws, y[i], local, i)
         speed[i] = velocity(laws, y[i], r, tension, kappa[i], local, i)
         slopes[_BIND, i] = binding(laws, y[i], r, held[i], local, i)
-        _, _, _, _, _, _, _, _, loss = partials(
-            laws, y[i], r, held[i], tension, kappa[i], local, i
-        )
+        _, _, _, _, _, _, _, _, loss = partials(laws, y[i], r, held[i], tension, kappa[i], local, i)
         slopes[_LOSS, i] = loss
         slopes[_SPREAD, i] = local[2, i]
     central_difference(speed, length / nodes, 0.0, along)
