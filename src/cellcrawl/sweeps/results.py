@@ -14,11 +14,10 @@ import xarray as xr
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.simulation.events import MODEL_ENDINGS
-from cellcrawl.sweeps.axes import plain, value_of
+from cellcrawl.sweeps.axes import OPTIONS, plain, value_of
 from cellcrawl.sweeps.grid import Grid, united
 from cellcrawl.sweeps.kept import read_kept
 from cellcrawl.sweeps.measures import MEASURES, described_columns
-from cellcrawl.sweeps.axes import OPTIONS
 from cellcrawl.sweeps.parts import COLUMNS, NOT_RUN, schema
 from cellcrawl.sweeps.planes import varied
 from cellcrawl.sweeps.store import SweepStore, grids_of
