@@ -160,7 +160,7 @@ def solve_step(
         if not rates(laws, around, time, now, residual, y, edge, mesh, work):
             return ROOTLESS
         if iteration == 0 and (stale or control[FACTORED] != c):
-            factor(laws, around, c, now, y, edge, mesh, work, matrix)
+            factor(laws, around, time, c, now, y, edge, mesh, work, matrix)
             control[FACTORED] = c
             counters[MATRIX_AGE] = 0
             counters[FACTORINGS] += 1
@@ -215,7 +215,7 @@ def bend_history(
     for j in range(1, order + 1):
         residual -= table[j] / j
     c = h / LEADING[order]
-    factor(laws, around, c, state, y, edge, mesh, work, matrix)
+    factor(laws, around, control[TIME], c, state, y, edge, mesh, work, matrix)
     solve(c, state, mesh, matrix, residual)
     table[1] += residual
 

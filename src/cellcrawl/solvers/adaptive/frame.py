@@ -31,7 +31,8 @@ from cellcrawl.solvers.adaptive.projection import (
 )
 from cellcrawl.solvers.adaptive.staggered import HALO, difference_ahead, fill_halo, mean_ahead
 from cellcrawl.solvers.base import Frame, Instant
-from cellcrawl.surroundings.place import placed
+from cellcrawl.surroundings.motion import MOVES
+from cellcrawl.surroundings.place import balance_in_place, surround_edge
 
 KAPPA, PLACE = COSINE, SINE  # rows that hold these once the tangent has been used
 _HALO = np.uint64(HALO)
@@ -96,7 +97,14 @@ def frame(
     out = np.empty((_FRICTION + 1, edge.shape[1]))
     y = np.empty(edge.shape[1])
     _sample(shape.state, shape.work, log_rate, y, out)
-    edge = placed(around, time, out[0], out[1], (np.cos(out[2]), np.sin(out[2])), edge)
+    if around is not None:
+        points = (out[0], out[1], np.cos(out[2]), np.sin(out[2]), out[3])
+        if around.motion[MOVES] > 0.0:
+            tension = float(layout.scalars(shape.state)[TENSION])
+            balance_in_place(laws, around, time, *points, tension, out[4], y.copy(), edge)
+        else:
+            surround_edge(around, time, *points, edge)
+        edge = around.local
     _balance(laws, float(layout.scalars(shape.state)[TENSION]), edge, y, out)
     return Frame(
         time=time,

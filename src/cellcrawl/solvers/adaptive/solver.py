@@ -14,7 +14,7 @@ from cellcrawl.solvers.adaptive.differences import DIFFERENCES
 from cellcrawl.solvers.adaptive.frame import Shape, frame, instant, shape_between
 from cellcrawl.solvers.adaptive.mesh import MESH_ROWS, edge_on_mesh, hold, lay_out
 from cellcrawl.solvers.adaptive.newton import MATRIX_ROWS
-from cellcrawl.solvers.adaptive.place import around
+from cellcrawl.solvers.adaptive.place import Around, around
 from cellcrawl.solvers.adaptive.projection import project
 from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, renew_rates
 from cellcrawl.solvers.adaptive.staggered import HALO
@@ -22,6 +22,7 @@ from cellcrawl.solvers.adaptive.step_error import relative_size
 from cellcrawl.solvers.base import Breakdown, Frame, Instant, Solver
 from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.starts.base import CellState
+from cellcrawl.surroundings import place
 from cellcrawl.validation import real_number, whole_number
 
 _STEPS_PER_CALL = 5000  # between two looks at Ctrl-C
@@ -63,6 +64,10 @@ class AdaptiveSolver(Solver):
         self._laws = conditions.laws.compiled
         self._compiled_surroundings = conditions.around()
         self._nodes = self.checked_nodes(nodes)
+        self._placed = place.around(
+            self._compiled_surroundings, len(conditions.laws.rows), self._nodes
+        )
+        self._around: Around | None = None
         self._rtol = real_number("rtol", rtol, 1e-10, 1e-2)
         counts = resolution.NODE_COUNTS
         self._max_nodes = whole_number("max_nodes", max_nodes, counts[0], counts[-1])
@@ -130,9 +135,9 @@ class AdaptiveSolver(Solver):
 
     def frame(self, time: float) -> Frame:
         edge = self._conditions.edge(time, self._nodes)
-        return frame(
-            self._laws, self._compiled_surroundings, time, self._shape(time), self._log_rate, edge
-        )
+        if self._placed is not None and self._around is not None:
+            self._placed.motion[:] = self._around.motion
+        return frame(self._laws, self._placed, time, self._shape(time), self._log_rate, edge)
 
     def _shape(self, time: float) -> Shape:
         """Return the edge at ``time``, measured once."""
@@ -149,7 +154,7 @@ class AdaptiveSolver(Solver):
         return shape
 
     def checkpoint(self) -> dict[str, np.ndarray]:
-        return {
+        saved = {
             "control": self._control.copy(),
             "counters": self._counters.copy(),
             "tally": self._tally.copy(),
@@ -157,9 +162,14 @@ class AdaptiveSolver(Solver):
             "log_rate": self._log_rate.copy(),
             "matrix": self._matrix.copy(),
         }
+        if self._around is not None:
+            saved["motion"] = self._around.motion.copy()
+        return saved
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
         self._hold(np.array(checkpoint["differences"], dtype=float))
+        if self._around is not None and "motion" in checkpoint:
+            self._around.motion[:] = checkpoint["motion"]
         self._control = np.array(checkpoint["control"], dtype=float)
         self._counters = np.array(checkpoint["counters"], dtype=np.int64)
         self._tally = np.array(checkpoint["tally"], dtype=float)
@@ -229,7 +239,7 @@ class AdaptiveSolver(Solver):
         self._mesh = np.zeros((MESH_ROWS, nodes + 2 * HALO))
         self._matrix = np.zeros((MATRIX_ROWS, nodes))
         rows = len(self._conditions.laws.rows) + 1
-        self._around = around(self._compiled_surroundings, rows, nodes)
+        self._around = around(self._compiled_surroundings, rows, nodes, self._around)
         self._control[drive.FACTORED] = 0.0
         self._edges: tuple[float, np.ndarray, np.ndarray] | None = None
         self._tally[0] = min(self._tally[0] or nodes, nodes)

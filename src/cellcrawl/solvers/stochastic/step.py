@@ -16,7 +16,7 @@ import numpy as np
 
 from cellcrawl._compile import inlined_kernel, kernel
 from cellcrawl.laws.functions import binding, off_rate, partials, turnover, velocity
-from cellcrawl.physics.force_balance import SOLVED, halley_step, solve_bonds
+from cellcrawl.physics.force_balance import SOLVED, halley_step
 from cellcrawl.solvers.cyclic import solve_cyclic_tridiagonal
 from cellcrawl.solvers.paper.step import (
     AREA,
@@ -38,7 +38,7 @@ from cellcrawl.solvers.paper.tangent_angle import (
     tangential_velocity,
 )
 from cellcrawl.solvers.stochastic.normals import fill_normals
-from cellcrawl.surroundings.place import surround_edge
+from cellcrawl.surroundings.place import balance_in_place
 
 # rows of a set of slopes: of the angle, tangential velocity, binding at the old n, its slope, D
 _TURN, _SLIDE, _BIND, _LOSS, _SPREAD = range(5)
@@ -151,7 +151,7 @@ def slopes_of(
 def _approach(
     laws: Any, y: np.ndarray, n: np.ndarray, sigma: float, kappa: np.ndarray, edge: np.ndarray
 ) -> None:
-    """Bring the force on the bonds so near its root after a kick that `solve_bonds` is fast."""
+    """Bring the force on the bonds so near its root after a kick that the last steps are few."""
     for i in range(n.size):
         for _ in range(2):
             r = off_rate(laws, y[i], edge, i)
@@ -242,9 +242,21 @@ def advance(
                 for i in range(nodes):
                     x[i] += new[ORIGIN_X]
                     z[i] += new[ORIGIN_Y]
-                surround_edge(around, time + (step + 1) * dt, x, z, cosine, sine, edge)
             _approach(laws, new_y, new_n, new[TENSION], bend, local)
-            failed = solve_bonds(laws, new_y, new_n, new[TENSION], bend, local)
+            failed = balance_in_place(
+                laws,
+                around,
+                time + (step + 1) * dt,
+                x,
+                z,
+                cosine,
+                sine,
+                bend,
+                new[TENSION],
+                new_n,
+                new_y,
+                edge,
+            )
             if failed != SOLVED:
                 return NO_ROOT, failed, step
         theta[:] = new_theta
