@@ -74,6 +74,7 @@ class RunDescription:
             object.__setattr__(self, name, value)
         _check_options(scheme, table("options", self.options))
         check_records(self.t_end, self.save_every)
+        self.conditions.check()
         if self.options.get("dt") is not None:
             _check_steps(self.t_end, self.options["dt"])
 
@@ -99,7 +100,8 @@ class RunDescription:
             return parameters
         if isinstance(self.start, Eigenmode):
             raise InputError("Eigenmode knows the paper's laws only: give another start")
-        return CellAtRest.of(parameters, rest_state(parameters, self.laws))
+        laws = self.conditions.laws_at(0.0)
+        return CellAtRest.of(parameters, rest_state(parameters, laws))
 
     def _world(self) -> dict[str, Any]:
         """Return laws and surroundings as plain values, where they are not the paper's."""

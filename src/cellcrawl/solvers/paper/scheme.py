@@ -28,6 +28,9 @@ _KEPT = 1e-4  # both are kept to rounding at the steps; between two they are int
 _STABLE = 2.0  # explicit Euler decays while step * rate < 2
 
 
+_Points = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+
+
 class PaperSolver(Solver):
     """The scheme of Chen, Saintillan & Rangamani (2023), with the transport term ``T n_s``.
 
@@ -303,7 +306,7 @@ class PaperSolver(Solver):
         points = self._edge_of(fields, scalars)
         return int(balance_in_place(self._laws, room, time, *points, tension, n, y, edge))
 
-    def _edge_of(self, fields: np.ndarray, scalars: np.ndarray) -> Any:
+    def _edge_of(self, fields: np.ndarray, scalars: np.ndarray) -> _Points:
         """Return x, y, tangent and curvature."""
         theta, length = fields[0], float(scalars[paper_step.LENGTH])
         kappa, x, z = np.empty((3, theta.size))
