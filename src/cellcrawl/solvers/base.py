@@ -17,7 +17,7 @@ from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.starts.base import CellState
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(eq=False, kw_only=True)
 class Instant:
     """The cell as a whole at one instant."""
 
@@ -33,7 +33,7 @@ class Instant:
     """Distance between the ends of the edge as the solver holds it, over its length."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(eq=False, kw_only=True)
 class Frame(Instant):
     """The cell at one instant, on nodes equally spaced in arclength.
 
