@@ -16,6 +16,7 @@ from cellcrawl.laws.rest import CellAtRest, rest_state
 from cellcrawl.parameters import CONSTANT, DESCRIPTIONS, Parameters, Schedule
 from cellcrawl.simulation.dataset import SCHEMA_VERSION, package_version
 from cellcrawl.simulation.events import crossing_at
+from cellcrawl.simulation.explaining import check_start
 from cellcrawl.simulation.following import check_records
 from cellcrawl.solvers import SOLVERS, Solver
 from cellcrawl.solvers.conditions import Conditions
@@ -89,6 +90,7 @@ class RunDescription:
         assert self.nodes is not None
         nodes = scheme.start_nodes(self.nodes, **self.options)
         state = self.start.state(self._resting(conditions.at(0.0)), nodes)
+        check_start(conditions, state)
         engine = scheme(state, conditions, nodes=self.nodes, **self.options)
         if crossing_at(engine, 0.0) is not None:
             raise InputError("the start crosses itself: the model needs a simple edge")

@@ -10,6 +10,7 @@ from typing import Any, Generic, TypeVar
 from cellcrawl.curve import first_crossing
 from cellcrawl.errors import InputError
 from cellcrawl.simulation.events import crossing_at, locate_crossing
+from cellcrawl.simulation.explaining import explained
 from cellcrawl.simulation.interruption import Interruption
 from cellcrawl.simulation.progress import Progress
 from cellcrawl.simulation.recorder import Checkpoint, Recorder
@@ -58,6 +59,7 @@ class Follower(Generic[Kept]):
             if ended is not None:
                 last = self.solver.time
                 if crossing_at(self.solver, last) is None:
+                    ended = explained(ended, self.solver, self.law.conditions)
                     return ended, self._off_grid(max(last, now))
                 target = last
             seen, crossed = self._look(target)

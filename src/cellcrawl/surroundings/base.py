@@ -73,6 +73,10 @@ class Surrounding(Described):
         """
         raise NotImplementedError
 
+    def conflict(self, points: np.ndarray) -> str | None:
+        """Return why a cell with this outline, shape (nodes, 2), cannot start here, or None."""
+        return None
+
     def table(self) -> np.ndarray:
         """Return numbers that `change` looks up by `look_up`: an image, the corners of a wall."""
         return np.empty(0)
@@ -133,8 +137,12 @@ class Surroundings:
         """Return the local parameters at places, from those far from all by name."""
         now = dict(p)
         for part in self.parts:
-            now |= part.change(at, SimpleNamespace(**now))
+            now |= self.after(part, now, at)
         return now
+
+    def after(self, part: Surrounding, p: Mapping[str, Any], at: Place) -> Mapping[str, Any]:
+        """Return what one part changes of the local parameters at places."""
+        return part.change(at, SimpleNamespace(**p))
 
     def compiled(self, law: Law) -> CompiledSurroundings:
         """Return them for kernels under a law."""
