@@ -94,6 +94,36 @@ def surround_edge(
 
 
 @kernel
+def agrees(
+    laws: Any,
+    around: Any,
+    x: np.ndarray,
+    y: np.ndarray,
+    tangent_x: np.ndarray,
+    tangent_y: np.ndarray,
+    kappa: np.ndarray,
+    sigma: float,
+    phi: np.ndarray,
+) -> bool:
+    """Whether the cell moves as the parameters in place were made for.
+
+    Otherwise there is a better velocity, and the parameters are kept to compare with.
+    """
+    motion, local = around.motion, around.local
+    found_x = found_y = 0.0
+    for i in range(x.size):
+        r = off_rate(laws, phi[i], local, i)
+        speed = velocity(laws, phi[i], r, sigma, kappa[i], local, i)
+        speed *= math.hypot(tangent_x[i], tangent_y[i])
+        found_x += (x[i] - motion[CENTER_X]) * speed
+        found_y += (y[i] - motion[CENTER_Y]) * speed
+    if improve(found_x / motion[AREA], found_y / motion[AREA], motion):
+        return True
+    around.before[:] = local
+    return False
+
+
+@kernel
 def settle(
     laws: Any,
     around: Any,
@@ -107,26 +137,16 @@ def settle(
     phi: np.ndarray,
     edge: np.ndarray,
 ) -> int:
-    """Whether the velocity of the cell is the one the parameters in place were made with.
+    """Make the parameters in place anew with a better velocity, if the cell moves otherwise.
 
-    Otherwise they are made anew with a better one, and all that follows from them must be
-    (`AGAIN`). Without a change of the parameters there is nothing to do.
+    What follows from them must then be made anew (`AGAIN`), unless they have not changed.
     """
-    motion, local, before = around.motion, around.local, around.before
-    if motion[MOVES] == 0.0:
+    if around.motion[MOVES] == 0.0:
         return SETTLED
-    found_x = found_y = 0.0
-    for i in range(x.size):
-        r = off_rate(laws, phi[i], local, i)
-        speed = velocity(laws, phi[i], r, sigma, kappa[i], local, i)
-        speed *= math.hypot(tangent_x[i], tangent_y[i])
-        found_x += (x[i] - motion[CENTER_X]) * speed
-        found_y += (y[i] - motion[CENTER_Y]) * speed
-    if improve(found_x / motion[AREA], found_y / motion[AREA], motion):
+    if agrees(laws, around, x, y, tangent_x, tangent_y, kappa, sigma, phi):
         return SETTLED
-    before[:] = local
     surround_edge(around, time, x, y, tangent_x, tangent_y, kappa, edge)
-    return changed(local, before, motion)
+    return changed(around.local, around.before, around.motion)
 
 
 @kernel
@@ -165,16 +185,19 @@ def balance_in_place(
     """
     if around is None:
         return solve_bonds(laws, phi, n, sigma, kappa, edge)
-    surround_edge(around, time, x, y, tangent_x, tangent_y, kappa, edge)
+    again = False
     while True:
+        surround_edge(around, time, x, y, tangent_x, tangent_y, kappa, edge)
+        if again:
+            state = changed(around.local, around.before, around.motion)
+            if state != AGAIN:
+                return SOLVED if state == SETTLED else 0
         failed = solve_bonds(laws, phi, n, sigma, kappa, around.local)
-        if failed != SOLVED:
+        if failed != SOLVED or around.motion[MOVES] == 0.0:
             return failed
-        state = settle(laws, around, time, x, y, tangent_x, tangent_y, kappa, sigma, phi, edge)
-        if state == UNSETTLED:
-            return 0
-        if state == SETTLED:
+        if agrees(laws, around, x, y, tangent_x, tangent_y, kappa, sigma, phi):
             return SOLVED
+        again = True
 
 
 @kernel
