@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -11,7 +12,15 @@ from cellcrawl.errors import InputError
 from cellcrawl.solvers.adaptive import drive, resolution
 from cellcrawl.solvers.adaptive import state as layout
 from cellcrawl.solvers.adaptive.differences import DIFFERENCES
-from cellcrawl.solvers.adaptive.frame import Shape, frame, shape_between
+from cellcrawl.solvers.adaptive.follow import follow
+from cellcrawl.solvers.adaptive.frame import (
+    MEASURES,
+    Shape,
+    frame,
+    instant,
+    measure,
+    room_for_shape,
+)
 from cellcrawl.solvers.adaptive.mesh import MESH_ROWS
 from cellcrawl.solvers.adaptive.newton import MATRIX_ROWS
 from cellcrawl.solvers.adaptive.place import Around, around
@@ -98,18 +107,28 @@ class AdaptiveSolver(Solver):
         return _START_NODES if rtol >= _TIGHT_RTOL else 4 * _START_NODES
 
     def advance(self, target: float) -> Breakdown | None:
+        return self._follow(np.array([target]), np.empty((1, MEASURES)))[1]
+
+    def instants(self, times: Sequence[float]) -> tuple[list[Instant], Breakdown | None]:
+        measures = np.empty((len(times), MEASURES))
+        seen, ended = self._follow(np.array(times), measures)
+        return [instant(times[i], measures[i]) for i in range(seen)], ended
+
+    def _follow(self, times: np.ndarray, measures: np.ndarray) -> tuple[int, Breakdown | None]:
+        """Go on to each of ``times`` and measure the cell there, as far as its edge is simple."""
         self._measured = None
         control, counters = self._control, self._counters
-        while control[drive.TIME] < target:
+        seen = 0
+        while True:
             now = self.time
             end = self._conditions.next_break(now)
-            if counters[drive.RESTARTING] and not self._restart():
-                return self._no_root(now)
+            if counters[drive.RESTARTING] and now < times[seen] and not self._restart():
+                return seen, self._no_root(now)
             profile, ramping = self._next_parameters(now, end)
-            code = drive.run(
+            done, code = follow(
                 self._laws,
                 self._around,
-                target,
+                times[seen:],
                 end,
                 self._tolerance,
                 _STEPS_PER_CALL,
@@ -126,17 +145,26 @@ class AdaptiveSolver(Solver):
                 self._mesh,
                 self._matrix,
                 self._work,
+                self._state,
+                self._trace,
+                measures[seen:],
+                self._tally[3:],
             )
+            seen += done
+            if code == drive.REACHED:
+                time = float(times[seen - 1])
+                if time >= control[drive.PREVIOUS_TIME]:
+                    self._measured = Shape(time, self._state, self._trace, measures[seen - 1])
+                return seen, None
             if code == drive.AT_BREAK:
                 counters[drive.RESTARTING] = 1
             elif code == drive.CHECK_NODES:
                 self._fit_grid()
             elif code in (drive.NO_ROOT, drive.STEP_TOO_SMALL, drive.UNRESOLVED):
-                return self._stuck(code)
-        return None
+                return seen, self._stuck(code)
 
     def instant(self, time: float) -> Instant:
-        return self._shape(time).instant
+        return instant(time, self._shape(time).measures)
 
     def frame(self, time: float) -> Frame:
         profile = self._parameters(time, self._nodes)
@@ -147,18 +175,17 @@ class AdaptiveSolver(Solver):
 
     def _shape(self, time: float) -> Shape:
         """Return the edge at ``time``, measured once."""
-        if self._measured is not None and self._measured.instant.time == time:
+        if self._measured is not None and self._measured.time == time:
             return self._measured
         first, last = self._control[drive.PREVIOUS_TIME], self._control[drive.TIME]
         if not first <= time <= last:
             raise ValueError(f"t = {time} is not within the last step, from {first} to {last}")
         steps = (time - last) / self._control[drive.STEP]
-        shape = shape_between(time, steps, self._counters[drive.ORDER], self._table)
-        closure, area = shape.mended
-        self._tally[3] = max(self._tally[3], closure)
-        self._tally[4] = max(self._tally[4], area)
-        self._measured = shape
-        return shape
+        measures = np.empty(MEASURES)
+        order, errors = self._counters[drive.ORDER], self._tally[3:]
+        measure(steps, order, self._table, self._state, self._trace, measures, errors)
+        self._measured = Shape(time, self._state, self._trace, measures)
+        return self._measured
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         saved = {
@@ -247,6 +274,7 @@ class AdaptiveSolver(Solver):
         self._measured = None
         self._table = np.zeros((drive.TABLE_ROWS, layout.size(nodes)))
         self._log_rate = np.zeros(nodes)
+        self._state, self._trace = room_for_shape(layout.size(nodes))
         self._work = np.zeros((WORK_ROWS, nodes + 2 * HALO))
         self._mesh = np.zeros((MESH_ROWS, nodes + 2 * HALO))
         self._matrix = np.zeros((MATRIX_ROWS, nodes))
