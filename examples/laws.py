@@ -52,3 +52,28 @@ cc.plot.paths(loaded).savefig(folder / "load.png", dpi=150)
 for name, run in loaded.items():
     last = run.isel(time=-1)
     print(f"{name}: {run.attrs['status']}, sharpest corner {float(last['curvature'].max()):.1f}")
+
+blunt = around.AlongEdge("v_p", bend=-1.0, sharp=10.0)
+bent = {
+    "the same all along": cc.simulate(glider, 60.0),
+    "slower where bent outwards": cc.simulate(glider, 60.0, surroundings=blunt),
+}
+cc.plot.paths(bent).savefig(folder / "along-edge.png", dpi=150)
+for name, run in bent.items():
+    print(f"{name}: sharpest corner {float(run['curvature'][-1].max()):.1f}")
+
+pulled = {
+    f"mu = {mu:g}": cc.simulate(zigzag, 60.0, surroundings=around.TensionGradient(mu=mu))
+    for mu in (0.0, 100.0, 300.0)
+}
+cc.plot.paths(pulled).savefig(folder / "tension-gradient.png", dpi=150)
+for name, run in pulled.items():
+    print(f"tension gradient {name}: {run.attrs['status']}, {cc.classify(run).mode}")
+
+noisy = {
+    name: cc.simulate(zigzag, 60.0, solver="stochastic", nodes=256, bonds=bonds)
+    for name, bonds in {"no noise": 1e300, "30000 bonds": 3e4, "3000 bonds": 3e3}.items()
+}
+cc.plot.paths(noisy).savefig(folder / "noise.png", dpi=150)
+for name, run in noisy.items():
+    print(f"{name}: {run.attrs['status']}, {cc.classify(run).mode}")

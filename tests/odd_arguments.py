@@ -159,6 +159,8 @@ def _calls(folder: Path) -> Iterator[Call]:
     yield call(cc.surroundings.Pattern, image=np.ones((3, 3)), pixel=0.5, parameter="r_on", x=0.0)
     yield call(cc.surroundings.Walls, corners=square, room=True, stiffness=1e4)
     yield call(cc.surroundings.Gradient, parameter="r_on", x=1.0, least=0.0)
+    yield call(cc.surroundings.TensionGradient, mu=100.0)
+    yield call(cc.surroundings.AlongEdge, parameter="v_p", front=0.1, bend=-0.1, slow=0.02)
     # starts
     yield call(cc.RandomPerturbation, seed=2, amplitude=1e-4, modes=10)
     yield call(cc.PerturbedCircle, radius={2: (0.1, 0.0)}, bound_fraction={2: (0.1, 0.0)})

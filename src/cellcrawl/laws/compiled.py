@@ -47,6 +47,7 @@ class Formulas(NamedTuple):
     friction: Expression
     balance: Expression
     binding: Expression
+    turnover: Expression
 
 
 class CompiledLaw(Compiled):
@@ -124,8 +125,9 @@ def _traced(law: Law) -> Formulas:
     pull = _formula(law, "pull", law.pull(phi, r, sigma, kappa, p))
     polymerization = _formula(law, "polymerization", law.polymerization(sigma, kappa, p))
     binding = _formula(law, "binding", law.binding(phi, r, n, p))
+    turnover = _formula(law, "turnover", law.turnover(phi, r, n, p))
     velocity = p.epsilon * (polymerization - retrograde)
-    return Formulas(off_rate, velocity, friction, friction - pull, binding)
+    return Formulas(off_rate, velocity, friction, friction - pull, binding, turnover)
 
 
 def _symbolic(law: Law) -> Law:
@@ -193,6 +195,7 @@ def _source(formulas: Formulas, rows: tuple[str, ...]) -> str:
             function("velocity", "phi, r, sigma, kappa", [formulas.velocity], at_hand),
             function("friction", "phi, r, n", [formulas.friction], at_hand),
             function("binding", "phi, r, n", [formulas.binding], at_hand),
+            function("turnover", "phi, r, n", [formulas.turnover], at_hand),
             function("partials", everything, partials, at_hand),
         ]
     )

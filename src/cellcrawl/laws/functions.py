@@ -145,6 +145,12 @@ def binding(laws: Any, phi: float, r: float, n: float, edge: Any, i: int) -> flo
 
 
 @_by_law
+def turnover(laws: Any, phi: float, r: float, n: float, edge: Any, i: int) -> float:
+    """Rates of binding and of unbinding together."""
+    raise NotImplementedError
+
+
+@_by_law
 def partials(
     laws: Any, phi: float, r: float, n: float, sigma: float, kappa: float, edge: Any, i: int
 ) -> tuple[float, float, float, float, float, float, float, float, float]:
@@ -161,6 +167,11 @@ def surround(
     y: float,
     normal_x: float,
     normal_y: float,
+    curvature: float,
+    arm_x: float,
+    arm_y: float,
+    velocity_x: float,
+    velocity_y: float,
     edge: Any,
     local: Any,
     i: int,

@@ -144,6 +144,10 @@ class Law(Described):
         """Rate of change of ``n`` at a material point, without diffusion."""
         return p.r_on * (1.0 - n) - r * n
 
+    def turnover(self, phi: Any, r: Any, n: Any, p: Any) -> Any:
+        """Rates of binding and of unbinding together, from which the noise of few bonds comes."""
+        return self.binding(phi, r, n, p) + 2.0 * r * n
+
     def check(self, parameters: Any) -> str | None:
         """Return why the law cannot be used with some `Parameters`, or None."""
         return None

@@ -5,12 +5,14 @@ from __future__ import annotations
 import bisect
 import itertools
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Final
 
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.parameters.dimensionless import DESCRIPTIONS, Parameters
 from cellcrawl.validation import known_names, real_number, shown, table
+
+_LAWS: Final = "laws."
 
 
 class Schedule:
@@ -22,7 +24,8 @@ class Schedule:
     Parameters
     ----------
     changes : mapping of str to sequence of (time, value)
-        For each parameter, its values at times in order. Times are dimensionless.
+        For each parameter, its values at times in order. Times are dimensionless. A number of the
+        law set is ``laws.`` and its name, as in ``laws.chi``.
 
     Raises
     ------
@@ -40,8 +43,10 @@ class Schedule:
     """
 
     def __init__(self, changes: Mapping[str, Sequence[tuple[float, float]]]) -> None:
-        known_names("Schedule", table("Schedule", changes), DESCRIPTIONS)
+        names = [name for name in table("Schedule", changes) if not _of_laws(name)]
+        known_names("Schedule", names, DESCRIPTIONS)
         self._points = {name: _checked(name, points) for name, points in changes.items()}
+        self._law_numbers = tuple(n.removeprefix(_LAWS) for n in self._points if _of_laws(n))
         times = {time for points in self._points.values() for time, _ in points}
         self._breaks = tuple(sorted(times))
 
@@ -54,6 +59,17 @@ class Schedule:
     def before(self, parameters: Parameters, time: float) -> Parameters:
         """Return ``parameters`` with the scheduled values that hold up to ``time``."""
         return self._evaluate(parameters, time, bisect.bisect_left)
+
+    @property
+    def law_numbers(self) -> tuple[str, ...]:
+        """Names of the law set's numbers that change."""
+        return self._law_numbers
+
+    @checked
+    def laws_at(self, time: float, *, before: bool = False) -> dict[str, float]:
+        """Return the scheduled numbers of the law set that hold from ``time`` on, or up to it."""
+        side = bisect.bisect_left if before else bisect.bisect_right
+        return {name: _value(self._points[_LAWS + name], time, side) for name in self.law_numbers}
 
     @property
     def breaks(self) -> tuple[float, ...]:
@@ -92,8 +108,16 @@ class Schedule:
     def _evaluate(self, parameters: Parameters, time: float, side: Any) -> Parameters:
         if not self._points:
             return parameters
-        values = {name: _value(points, time, side) for name, points in self._points.items()}
-        return parameters.replace(**values)
+        values = {
+            name: _value(points, time, side)
+            for name, points in self._points.items()
+            if not _of_laws(name)
+        }
+        return parameters.replace(**values) if values else parameters
+
+
+def _of_laws(name: Any) -> bool:
+    return isinstance(name, str) and name.startswith(_LAWS)
 
 
 def _checked(name: str, points: Any) -> tuple[tuple[float, float], ...]:
@@ -105,11 +129,13 @@ def _checked(name: str, points: Any) -> tuple[tuple[float, float], ...]:
         raise InputError(f"Schedule {name} must be a list of (time, value) pairs") from None
     if not pairs:
         raise InputError(f"Schedule {name} is empty: give at least one (time, value) pair")
-    limits = DESCRIPTIONS[name]
+    low, high = -1e300, 1e300  # of a law's number, whose range is known when its law is
+    if not _of_laws(name):
+        low, high = DESCRIPTIONS[name].low, DESCRIPTIONS[name].high
     checked = tuple(
         (
             real_number(f"Schedule {name} time", time, -1e12, 1e12),
-            real_number(f"Schedule {name} at t = {shown(time)}", value, limits.low, limits.high),
+            real_number(f"Schedule {name} at t = {shown(time)}", value, low, high),
         )
         for time, value in pairs
     )

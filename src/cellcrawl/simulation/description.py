@@ -16,6 +16,7 @@ from cellcrawl.laws.rest import CellAtRest, rest_state
 from cellcrawl.parameters import CONSTANT, DESCRIPTIONS, Parameters, Schedule
 from cellcrawl.simulation.dataset import SCHEMA_VERSION, package_version
 from cellcrawl.simulation.events import crossing_at
+from cellcrawl.simulation.explaining import check_start
 from cellcrawl.simulation.following import check_records
 from cellcrawl.solvers import SOLVERS, Solver
 from cellcrawl.solvers.conditions import Conditions
@@ -74,7 +75,8 @@ class RunDescription:
             object.__setattr__(self, name, value)
         _check_options(scheme, table("options", self.options))
         check_records(self.t_end, self.save_every)
-        if "dt" in self.options:
+        self.conditions.check()
+        if self.options.get("dt") is not None:
             _check_steps(self.t_end, self.options["dt"])
 
     @property
@@ -88,6 +90,7 @@ class RunDescription:
         assert self.nodes is not None
         nodes = scheme.start_nodes(self.nodes, **self.options)
         state = self.start.state(self._resting(conditions.at(0.0)), nodes)
+        check_start(conditions, state)
         engine = scheme(state, conditions, nodes=self.nodes, **self.options)
         if crossing_at(engine, 0.0) is not None:
             raise InputError("the start crosses itself: the model needs a simple edge")
@@ -99,7 +102,8 @@ class RunDescription:
             return parameters
         if isinstance(self.start, Eigenmode):
             raise InputError("Eigenmode knows the paper's laws only: give another start")
-        return CellAtRest.of(parameters, rest_state(parameters, self.laws))
+        laws = self.conditions.laws_at(0.0)
+        return CellAtRest.of(parameters, rest_state(parameters, laws))
 
     def _world(self) -> dict[str, Any]:
         """Return laws and surroundings as plain values, where they are not the paper's."""

@@ -10,6 +10,7 @@ from typing import Any, Generic, TypeVar
 from cellcrawl.curve import first_crossing
 from cellcrawl.errors import InputError
 from cellcrawl.simulation.events import crossing_at, locate_crossing
+from cellcrawl.simulation.explaining import explained
 from cellcrawl.simulation.interruption import Interruption
 from cellcrawl.simulation.progress import Progress
 from cellcrawl.simulation.recorder import Checkpoint, Recorder
@@ -72,6 +73,7 @@ class Follower(Generic[Kept]):
                 last = self.solver.time
                 if crossing_at(self.solver, last) is not None:
                     return self._torn(valid, now, last)
+                ended = explained(ended, self.solver, self.law.conditions)
                 return ended, self._off_grid(max(last, now))
             age += len(instants)
             if commits or age >= _CHECKS_PER_CHECKPOINT:

@@ -41,7 +41,7 @@ class TensionLaw:
     """Time of the last check, minus infinity before the first."""
 
     def __init__(self, conditions: Conditions, tolerance: float) -> None:
-        self._conditions = conditions
+        self.conditions = conditions
         self._tolerance = tolerance
         self.time = -math.inf
         self._area = self._tension = self._slack = 0.0
@@ -54,7 +54,7 @@ class TensionLaw:
     def next_look(self, time: float) -> float:
         """Return the next time at which ``G`` may jump or a ramp of it begin or end."""
         changes = self._constant_rate is None
-        return self._conditions.next_break(time) if changes else math.inf
+        return self.conditions.next_break(time) if changes else math.inf
 
     def check(self, seen: Instant) -> Breakdown | None:
         """Take in the cell at a time not before the last; return how it breaks the law, or None."""
@@ -90,7 +90,7 @@ class TensionLaw:
         """Return ``G``, which seldom changes and is asked for at every check."""
         if self._constant_rate is not None:
             return self._constant_rate
-        return self._conditions.tension_rate(time, before=before)
+        return self.conditions.tension_rate(time, before=before)
 
     def checkpoint(self) -> np.ndarray:
         """Return the state from which `restore` goes on."""

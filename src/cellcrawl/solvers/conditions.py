@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cellcrawl.errors import InputError
 from cellcrawl.laws.law import PAPER, Law
 from cellcrawl.laws.rest import local_values
 from cellcrawl.parameters.dimensionless import Parameters
 from cellcrawl.parameters.schedule import CONSTANT, Schedule
+from cellcrawl.validation import known_names
 
 if TYPE_CHECKING:
     from cellcrawl.surroundings.base import CompiledSurroundings, Surroundings
@@ -45,6 +47,28 @@ class Conditions:
         """Return the parameters that hold from ``time`` on."""
         return self._at(time)
 
+    def laws_at(self, time: float, *, before: bool = False) -> Law:
+        """Return the law set with the numbers that hold from ``time`` on, or up to it."""
+        values = self.schedule.laws_at(time, before=before)
+        return self.laws.replace(**values) if values else self.laws
+
+    def check(self) -> None:
+        """Raise `InputError` if the law set cannot be used with what the schedule makes of it."""
+        names, own = self.schedule.law_numbers, self.laws.parameters
+        if names and not own:
+            raise InputError(
+                f"{self.laws.name} has no numbers to schedule: laws.{names[0]} is none"
+            )
+        known_names(f"{self.laws.name} in the schedule", names, own)
+        if self.laws == PAPER:
+            return
+        for time in (*self.schedule.breaks, -math.inf):
+            for before in (False, True):
+                law = self.laws_at(time, before=before)
+                complaint = law.check(self._at(time, before=before))
+                if complaint is not None:
+                    raise InputError(f"{law.name} at t = {time:g}: {complaint}")
+
     def edge(self, time: float, nodes: int, *, before: bool = False) -> np.ndarray:
         """Return the local parameters at equal arclengths, shape (rows of the law, nodes).
 
@@ -52,7 +76,12 @@ class Conditions:
 
         With ``before``, a jump at ``time`` has not happened yet.
         """
-        return np.repeat(_edge_column(self._at(time, before=before), self.laws), nodes, axis=1)
+        column = _edge_column(self._at(time, before=before), self.laws)
+        if self.schedule.law_numbers:
+            column = column.copy()
+            for name, value in self.schedule.laws_at(time, before=before).items():
+                column[self.laws.rows.index(name)] = value
+        return np.repeat(column, nodes, axis=1)
 
     def tension_rate(self, time: float, *, before: bool = False) -> float:
         """Return ``G`` of the tension law from ``time`` on, or up to it with ``before``."""

@@ -16,7 +16,13 @@ from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.laws.law import described
 from cellcrawl.surroundings.base import Place, Surrounding, Surroundings
-from cellcrawl.surroundings.fields import ElectricField, Gradient, UniformForce
+from cellcrawl.surroundings.fields import (
+    AlongEdge,
+    ElectricField,
+    Gradient,
+    TensionGradient,
+    UniformForce,
+)
 from cellcrawl.surroundings.patterns import Island, Pattern, Stripes
 from cellcrawl.surroundings.walls import Channel, Walls
 from cellcrawl.validation import one_of, shown
@@ -28,6 +34,8 @@ SHIPPED: Final[dict[str, type[Any]]] = {
     "gradient": Gradient,
     "force": UniformForce,
     "electric-field": ElectricField,
+    "tension-gradient": TensionGradient,
+    "along-edge": AlongEdge,
     "channel": Channel,
     "walls": Walls,
 }
@@ -35,6 +43,7 @@ SHIPPED: Final[dict[str, type[Any]]] = {
 
 __all__ = [
     "SHIPPED",
+    "AlongEdge",
     "Channel",
     "ElectricField",
     "Gradient",
@@ -44,6 +53,7 @@ __all__ = [
     "Stripes",
     "Surrounding",
     "Surroundings",
+    "TensionGradient",
     "UniformForce",
     "Walls",
     "as_surroundings",

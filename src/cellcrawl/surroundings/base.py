@@ -10,27 +10,51 @@ from typing import Any, ClassVar, Final
 import numpy as np
 
 from cellcrawl.errors import InputError
-from cellcrawl.laws.expressions import Expression, body, call, number, symbol
+from cellcrawl.laws.expressions import Expression, body, call, number, symbol, symbols_of
 from cellcrawl.laws.functions import Compiled, register
 from cellcrawl.laws.law import Described, Law
-from cellcrawl.surroundings.lookup import image_value, polygon_depth
+from cellcrawl.surroundings.lookup import angle_from_front, image_value, polygon_depth
 from cellcrawl.validation import shown
 
-_LOOKUPS: Final = {"image_value": image_value, "polygon_depth": polygon_depth}
-_AT: Final = ("x", "y", "time", "normal_x", "normal_y")
+_LOOKUPS: Final[dict[str, Any]] = {
+    "image_value": image_value,
+    "polygon_depth": polygon_depth,
+    "angle_from_front": angle_from_front,
+}
+_MOTION: Final = ("arm_x", "arm_y", "velocity_x", "velocity_y")
+_AT: Final = ("time", "x", "y", "normal_x", "normal_y", "curvature", *_MOTION)
 
 
 class Place:
-    """Where a node is, for `Surrounding.change`: ``x``, ``y``, ``time`` and the outward normal."""
+    """Where a node is, for `Surrounding.change`.
 
+    ``x``, ``y`` and ``time``; the outward normal ``normal_x``, ``normal_y``; the ``curvature`` of
+    the edge; ``arm_x``, ``arm_y`` from the cell's centroid; and the velocity of that,
+    ``velocity_x``, ``velocity_y``, which the forces on the whole edge make together.
+    """
+
+    time: Any
     x: Any
     y: Any
-    time: Any
     normal_x: Any
     normal_y: Any
+    curvature: Any
+    arm_x: Any
+    arm_y: Any
+    velocity_x: Any
+    velocity_y: Any
 
     def __init__(self, **values: Any) -> None:
-        self.__dict__.update(values)
+        self.__dict__.update(dict.fromkeys(_AT[5:], 0.0), **values)
+
+    @property
+    def angle(self) -> Any:
+        """Angle at the centroid from the direction of motion, positive to the left, to +-pi."""
+        arguments = (self.velocity_x, self.velocity_y, self.arm_x, self.arm_y)
+        if any(isinstance(value, Expression) for value in arguments):
+            return call("angle_from_front", *arguments)
+        ahead = self.velocity_x * self.arm_x + self.velocity_y * self.arm_y
+        return np.arctan2(self.velocity_x * self.arm_y - self.velocity_y * self.arm_x, ahead)
 
 
 class Surrounding(Described):
@@ -45,10 +69,13 @@ class Surrounding(Described):
     def change(self, at: Place, p: Any) -> Mapping[str, Any]:
         """Return new values of local parameters by name, from those before (``p.r_on``, …).
 
-        ``at.x`` and ``at.y`` are in cell radii, ``at.time`` in 1/k_off0; ``at.normal_x`` and
-        ``at.normal_y`` point out of the cell. A ``p.pressure`` pushes the edge inwards.
+        ``at`` is a `Place`, in cell radii and 1/k_off0. A ``p.pressure`` pushes the edge inwards.
         """
         raise NotImplementedError
+
+    def conflict(self, points: np.ndarray) -> str | None:
+        """Return why a cell with this outline, shape (nodes, 2), cannot start here, or None."""
+        return None
 
     def table(self) -> np.ndarray:
         """Return numbers that `change` looks up by `look_up`: an image, the corners of a wall."""
@@ -61,10 +88,15 @@ class Surrounding(Described):
 
 
 class CompiledSurroundings(Compiled):
-    """Surroundings as an argument of kernels, with their numbers."""
+    """Surroundings as an argument of kernels, with their numbers.
 
-    def __init__(self, digest: str, source: str, data: np.ndarray) -> None:
+    ``bends`` and ``moves`` say whether they ask for the curvature and for the motion of the cell.
+    """
+
+    def __init__(self, digest: str, source: str, data: np.ndarray, uses: set[str]) -> None:
         self.digest, self.source, self.data = digest, source, data
+        self.bends = "curvature" in uses
+        self.moves = not uses.isdisjoint(_MOTION)
         super().__init__(f"surroundings_{digest}")
         register(self.key, source, _LOOKUPS)
 
@@ -105,14 +137,18 @@ class Surroundings:
         """Return the local parameters at places, from those far from all by name."""
         now = dict(p)
         for part in self.parts:
-            now |= part.change(at, SimpleNamespace(**now))
+            now |= self.after(part, now, at)
         return now
+
+    def after(self, part: Surrounding, p: Mapping[str, Any], at: Place) -> Mapping[str, Any]:
+        """Return what one part changes of the local parameters at places."""
+        return part.change(at, SimpleNamespace(**p))
 
     def compiled(self, law: Law) -> CompiledSurroundings:
         """Return them for kernels under a law."""
-        source, data = _source(self.parts, law.rows)
+        source, data, uses = _source(self.parts, law.rows)
         digest = hashlib.sha256(source.encode()).hexdigest()[:16]
-        return CompiledSurroundings(digest, source, data)
+        return CompiledSurroundings(digest, source, data, uses)
 
 
 class _Local:
@@ -146,7 +182,7 @@ def _symbolic(part: Surrounding, first: int, table: int) -> Surrounding:
     return made
 
 
-def _source(parts: Sequence[Surrounding], rows: Sequence[str]) -> tuple[str, np.ndarray]:
+def _source(parts: Sequence[Surrounding], rows: Sequence[str]) -> tuple[str, np.ndarray, set[str]]:
     at = Place(**{name: symbol(name) for name in _AT})
     p = _Local(rows)
     data: list[float] = []
@@ -162,6 +198,11 @@ def _source(parts: Sequence[Surrounding], rows: Sequence[str]) -> tuple[str, np.
                     f"have {', '.join(rows)}"
                 )
             changed[name] = value if isinstance(value, Expression) else number(float(value))
+            if name == "D" and not symbols_of([changed[name]]).isdisjoint(_MOTION):
+                raise InputError(
+                    f"{type(part).__name__} makes D depend on the motion of the cell: only what "
+                    "the forces and the kinetics ask for may"
+                )
         p._now = dict(changed)
     names = {symbol(name): name for name in _AT}
     names |= {symbol(f"p.{row}"): f"edge[{k}, i]" for k, row in enumerate(rows)}
@@ -172,7 +213,6 @@ def _source(parts: Sequence[Surrounding], rows: Sequence[str]) -> tuple[str, np.
         f"    local[{rows.index(name)}, i] = {code}"
         for name, code in zip(changed, results, strict=True)
     ]
-    head = (
-        f"def surround(around, data, {', '.join((*_AT[2:3], *_AT[:2], *_AT[3:]))}, edge, local, i):"
-    )
-    return "\n".join([head, *lines, "    return 0"]), np.array(data or [0.0])
+    head = f"def surround(around, data, {', '.join(_AT)}, edge, local, i):"
+    source = "\n".join([head, *lines, "    return 0"])
+    return source, np.array(data or [0.0]), symbols_of(changed.values())

@@ -1,4 +1,4 @@
-"""What surroundings look up in a table at a place, for kernels."""
+"""What surroundings ask of a table or of the cell's motion at a place, for kernels."""
 
 from __future__ import annotations
 
@@ -63,3 +63,10 @@ def polygon_depth(data: np.ndarray, table: float, x: float, y: float) -> float:
         if (ay > y) != (by > y) and x < ax + (y - ay) / (by - ay) * dx:
             inside = not inside
     return math.sqrt(least) if inside else -math.sqrt(least)
+
+
+@inlined_kernel
+def angle_from_front(velocity_x: float, velocity_y: float, arm_x: float, arm_y: float) -> float:
+    """Angle from the velocity to an arm, positive to the left."""
+    ahead = velocity_x * arm_x + velocity_y * arm_y
+    return math.atan2(velocity_x * arm_y - velocity_y * arm_x, ahead)

@@ -14,7 +14,7 @@ import xarray as xr
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.simulation.events import MODEL_ENDINGS
-from cellcrawl.sweeps.axes import plain, value_of
+from cellcrawl.sweeps.axes import OPTIONS, plain, value_of
 from cellcrawl.sweeps.grid import Grid, united
 from cellcrawl.sweeps.kept import read_kept
 from cellcrawl.sweeps.measures import MEASURES, described_columns
@@ -173,8 +173,8 @@ class Sweep:
         Parameters
         ----------
         **selection
-            Columns and their values, enough to tell the run from all others, as in
-            ``run(r_on=26, zeta_1=600, seed=1)``.
+            Columns or solver options and their values, enough to tell the run from all others, as
+            in ``run(r_on=26, zeta_1=600, seed=1)``.
 
         Raises
         ------
@@ -183,13 +183,18 @@ class Sweep:
         """
         if self.keep == "rows":
             raise InputError(f"{self.path} keeps rows only: sweep with keep='tracks' or 'fields'")
-        known_names("the rows", selection, COLUMNS)
+        known_names("the rows", selection, (*COLUMNS, *OPTIONS))
         wanted = {name: _as_in_a_row(name, value) for name, value in selection.items()}
-        table = self.table(list(dict.fromkeys(["key", "part", "status", "message", *selection])))
+        own = [name for name in selection if name in COLUMNS]
+        names = ["key", "part", "status", "message", "options", *own]
+        rows = self.table(list(dict.fromkeys(names))).to_pylist()
         found = [
             row
-            for row in table.to_pylist()
-            if all(row[name] == value for name, value in wanted.items())
+            for row in rows
+            if all(
+                row[name] == value if name in row else json.loads(row["options"]).get(name) == value
+                for name, value in wanted.items()
+            )
         ]
         if len(found) != 1:
             text = ", ".join(f"{name} = {shown(value)}" for name, value in selection.items())

@@ -9,6 +9,7 @@ from typing import Final
 from cellcrawl.errors import InputError, nearest_name
 from cellcrawl.verification import (
     agreement,
+    along_edge,
     claims_diagram,
     claims_linear,
     claims_modes,
@@ -22,6 +23,7 @@ from cellcrawl.verification import (
     invariants,
     laws,
     long_runs,
+    noise,
     orders,
     restart,
 )
@@ -53,6 +55,10 @@ CHECKS: Final[tuple[Check, ...]] = (
     Check("spectra", "laws", laws.spectra),
     Check("drifts", "laws", laws.drifts),
     Check("limits", "laws", laws.limits),
+    Check("motion", "laws", along_edge.motion),
+    Check("bond-noise", "laws", noise.spectrum),
+    Check("noise-at-rest", "laws", noise.at_rest),
+    Check("many-bonds", "laws", noise.many_bonds),
     Check("breathing", "claims-linear", claims_linear.breathing),
     Check("translation", "claims-linear", claims_linear.translation),
     Check("dispersion", "claims-linear", claims_linear.dispersion),

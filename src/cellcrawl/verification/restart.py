@@ -24,6 +24,7 @@ _OPTIONS: Final[dict[str, dict[str, Any]]] = {
     "adaptive": {},
     "paper": {"nodes": 200},
     "spline": {"nodes": 128},
+    "stochastic": {"nodes": 128, "bonds": 300.0},
 }
 
 

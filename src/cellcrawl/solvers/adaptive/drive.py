@@ -216,7 +216,7 @@ def solve_step(
         if not rates(laws, around, time, now, residual, y, edge, mesh, work):
             return ROOTLESS
         if iteration == 0 and (stale or control[FACTORED] != c):
-            factor(laws, around, c, now, y, edge, mesh, work, matrix)
+            factor(laws, around, time, c, now, y, edge, mesh, work, matrix)
             control[FACTORED] = c
             counters[MATRIX_AGE] = 0
             counters[FACTORINGS] += 1

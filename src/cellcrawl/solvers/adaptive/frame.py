@@ -30,7 +30,8 @@ from cellcrawl.solvers.adaptive.projection import (
 )
 from cellcrawl.solvers.adaptive.staggered import HALO, difference_ahead, fill_halo, mean_ahead
 from cellcrawl.solvers.base import Frame, Instant
-from cellcrawl.surroundings.place import surround_edge
+from cellcrawl.surroundings.motion import MOVES
+from cellcrawl.surroundings.place import balance_in_place, surround_edge
 
 KAPPA, PLACE = COSINE, SINE  # rows that hold these once the tangent has been used
 _HALO = np.uint64(HALO)
@@ -180,7 +181,15 @@ def fill_frame(
         for i in range(nodes):
             out[_VELOCITY, i] = math.cos(out[2, i])
             out[_FRICTION, i] = math.sin(out[2, i])
-        surround_edge(around, time, out[0], out[1], out[_VELOCITY], out[_FRICTION], edge[:rows])
+        x, z, tangent_x, tangent_z, kappa = out[0], out[1], out[_VELOCITY], out[_FRICTION], out[3]
+        far = edge[:rows]
+        if around.motion[MOVES] > 0.0:
+            phi = y.copy()  # the last bits of a frame do not tell how often the balance was solved
+            balance_in_place(
+                laws, around, time, x, z, tangent_x, tangent_z, kappa, sigma, out[4], phi, far
+            )
+        else:
+            surround_edge(around, time, x, z, tangent_x, tangent_z, kappa, far)
         _balance(laws, sigma, around.local, y, out)
     else:
         _balance(laws, sigma, edge, y, out)

@@ -13,8 +13,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel
-from cellcrawl.laws.functions import partials
+from cellcrawl._compile import inlined_kernel, kernel
+from cellcrawl.laws.functions import balance, partials, velocity
 from cellcrawl.solvers.adaptive.entries import (
     AREA,
     LENGTH,
@@ -24,9 +24,11 @@ from cellcrawl.solvers.adaptive.entries import (
     TENSION_RATE,
 )
 from cellcrawl.solvers.adaptive.mesh import FINE, FINE_NODE
+from cellcrawl.solvers.adaptive.place import MORE_CURVED, bent_midpoints
 from cellcrawl.solvers.adaptive.rates import RATE
 from cellcrawl.solvers.adaptive.staggered import HALO, difference_ahead, dot, fill_halo
 from cellcrawl.solvers.cyclic import FACTOR_ROWS, factor_cyclic_tridiagonal, solve_factored
+from cellcrawl.surroundings.motion import BENDS
 
 # rows of a matrix: how U answers to n and to sigma, how n answers to sigma within a step, g kappa,
 # a few numbers, g times the first
@@ -57,10 +59,31 @@ def _blend(a: np.ndarray, out: np.ndarray) -> None:
     out[last] = a[last] + _COMPACT * (a[last - 1] + a[0])
 
 
+@inlined_kernel
+def _through_the_parameters(
+    laws: Any,
+    y: float,
+    r: float,
+    n: float,
+    sigma: float,
+    kappa: float,
+    local: np.ndarray,
+    bent: np.ndarray,
+    i: int,
+) -> tuple[float, float]:
+    """How balance and velocity answer to the curvature by way of the local parameters."""
+    before, _, _ = balance(laws, y, r, n, sigma, kappa, local, i)
+    after, _, _ = balance(laws, y, r, n, sigma, kappa, bent, i)
+    slower = velocity(laws, y, r, sigma, kappa, local, i)
+    faster = velocity(laws, y, r, sigma, kappa, bent, i)
+    return (after - before) / MORE_CURVED, (faster - slower) / MORE_CURVED
+
+
 @kernel
 def factor(
     laws: Any,
     around: Any,
+    time: float,
     c: float,
     state: np.ndarray,
     y: np.ndarray,
@@ -87,6 +110,11 @@ def factor(
     spreading = _MIDDLING * c * per_spacing**2
     rate = work[RATE]
     pulled, loss, slide = work[0], work[1], work[3]
+    bends = False
+    if around is not None:
+        bends = around.motion[BENDS] > 0.0
+        if bends:
+            bent_midpoints(around, time, w, scalars, fine, edge)
     for i in range(np.uint64(nodes)):
         j = i + _HALO
         bend[i] = winding + per_spacing * difference_ahead(w, j)
@@ -94,6 +122,12 @@ def factor(
         by_phi, by_n, by_sigma, by_kappa, u_phi, u_sigma, u_kappa, b_phi, b_n = partials(
             laws, y[i], rate[i], n[j], sigma, kappa, local, i
         )
+        if around is not None and bends:
+            more_kappa, more_u = _through_the_parameters(
+                laws, y[i], rate[i], n[j], sigma, kappa, local, around.before, i
+            )
+            by_kappa += more_kappa
+            u_kappa += more_u
         yielding = -1.0 / by_phi  # how phi answers to a balance that is off
         share, slip = u_phi * yielding, b_phi * yielding
         by_linkers[i] = share * by_n

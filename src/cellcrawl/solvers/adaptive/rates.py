@@ -32,7 +32,7 @@ from cellcrawl.solvers.adaptive.entries import (
     TENSION_RATE,
 )
 from cellcrawl.solvers.adaptive.mesh import CHANGE, FINE, FINE_NODE
-from cellcrawl.solvers.adaptive.place import surround_midpoints
+from cellcrawl.solvers.adaptive.place import settle_midpoints, surround_midpoints
 from cellcrawl.solvers.adaptive.staggered import (
     HALO,
     cell_mean,
@@ -45,6 +45,7 @@ from cellcrawl.solvers.adaptive.staggered import (
     running_sum,
     total,
 )
+from cellcrawl.surroundings.place import SETTLED, UNSETTLED
 
 WORK_ROWS: Final = 6
 RATE: Final = 4  # row of `work` that keeps r beside the last y, from stage to stage
@@ -139,11 +140,19 @@ def rates(
     if around is not None:
         local = around.local
         if length > 0.0:
-            surround_midpoints(around, time, w, g, scalars, edge)
-    if not (
-        length > 0.0 and velocities(laws, w, n, length, scalars[TENSION], local, fine, y, work)
-    ):
+            surround_midpoints(around, time, w, g, scalars, fine, edge)
+    if not length > 0.0:
         return False
+    while True:
+        if not velocities(laws, w, n, length, scalars[TENSION], local, fine, y, work):
+            return False
+        if around is None:
+            break
+        settled = settle_midpoints(around, time, w, g, scalars, fine, work[0], edge)
+        if settled == SETTLED:
+            break
+        if settled == UNSETTLED:
+            return False
     spacing = length / nodes
     per_spacing = nodes / length
     turn = 2.0 * math.pi / nodes

@@ -148,7 +148,7 @@ def bend_history(
             past += table[j, k] / j
         residual[k] = h * residual[k] - past
     c = h / LEADING[order]
-    factor(laws, around, c, state, y, edge, mesh, work, matrix)
+    factor(laws, around, control[TIME], c, state, y, edge, mesh, work, matrix)
     solve(c, state, mesh, matrix, residual)
     for k in range(residual.size):
         table[1, k] += residual[k]

@@ -23,7 +23,7 @@ from cellcrawl.solvers.adaptive.frame import (
 )
 from cellcrawl.solvers.adaptive.mesh import MESH_ROWS
 from cellcrawl.solvers.adaptive.newton import MATRIX_ROWS
-from cellcrawl.solvers.adaptive.place import around
+from cellcrawl.solvers.adaptive.place import Around, around
 from cellcrawl.solvers.adaptive.projection import project
 from cellcrawl.solvers.adaptive.rates import WORK_ROWS
 from cellcrawl.solvers.adaptive.regrid import move_to_nodes, wanted_nodes
@@ -74,6 +74,7 @@ class AdaptiveSolver(Solver):
         self._nodes = self.checked_nodes(nodes)
         rows = len(conditions.laws.rows) + 1
         self._placed = place.around(self._compiled_surroundings, rows, self._nodes)
+        self._around: Around | None = None
         self._constant: np.ndarray | None = None  # parameters of a run in which none changes
         self._rtol = real_number("rtol", rtol, 1e-10, 1e-2)
         self._tolerance, self._allowed = _local_tolerance(self._rtol), _grid_tolerance(self._rtol)
@@ -168,6 +169,8 @@ class AdaptiveSolver(Solver):
     def frame(self, time: float) -> Frame:
         profile = self._parameters(time, self._nodes)
         shape = self._shape(time)
+        if self._placed is not None and self._around is not None:
+            self._placed.motion[:] = self._around.motion
         return frame(self._laws, self._placed, shape, self._log_rate, profile, self._nodes)
 
     def _shape(self, time: float) -> Shape:
@@ -185,7 +188,7 @@ class AdaptiveSolver(Solver):
         return self._measured
 
     def checkpoint(self) -> dict[str, np.ndarray]:
-        return {
+        saved = {
             "control": self._control.copy(),
             "counters": self._counters.copy(),
             "tally": self._tally.copy(),
@@ -193,9 +196,14 @@ class AdaptiveSolver(Solver):
             "log_rate": self._log_rate.copy(),
             "matrix": self._matrix.copy(),
         }
+        if self._around is not None:
+            saved["motion"] = self._around.motion.copy()
+        return saved
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
         self._hold(np.array(checkpoint["differences"], dtype=float))
+        if self._around is not None and "motion" in checkpoint:
+            self._around.motion[:] = checkpoint["motion"]
         self._control = np.array(checkpoint["control"], dtype=float)
         self._counters = np.array(checkpoint["counters"], dtype=np.int64)
         self._tally = np.array(checkpoint["tally"], dtype=float)
@@ -272,7 +280,7 @@ class AdaptiveSolver(Solver):
         self._matrix = np.zeros((MATRIX_ROWS, nodes))
         rows = len(self._conditions.laws.rows) + 1
         self._edge = np.zeros((rows, nodes))
-        self._around = around(self._compiled_surroundings, rows, nodes)
+        self._around = around(self._compiled_surroundings, rows, nodes, self._around)
         self._control[drive.FACTORED] = 0.0
         self._tally[0] = min(self._tally[0] or nodes, nodes)
         self._tally[1] = max(self._tally[1], nodes)

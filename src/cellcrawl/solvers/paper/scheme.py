@@ -9,7 +9,7 @@ import numpy as np
 
 from cellcrawl.errors import InputError
 from cellcrawl.linear import fastest_decay
-from cellcrawl.physics.force_balance import SOLVED, solve_bonds
+from cellcrawl.physics.force_balance import SOLVED
 from cellcrawl.solvers.base import (
     Breakdown,
     Frame,
@@ -21,11 +21,14 @@ from cellcrawl.solvers.fixed_steps import ON_GRID, steps_towards
 from cellcrawl.solvers.paper import step as paper_step
 from cellcrawl.solvers.paper import tangent_angle
 from cellcrawl.starts.base import CellState
-from cellcrawl.surroundings.place import around, placed
+from cellcrawl.surroundings.place import Around, around, balance_in_place, surround_edge
 from cellcrawl.validation import real_number, whole_number
 
 _KEPT = 1e-4  # both are kept to rounding at the steps; between two they are interpolated
 _STABLE = 2.0  # explicit Euler decays while step * rate < 2
+
+
+_Points = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 class PaperSolver(Solver):
@@ -101,7 +104,10 @@ class PaperSolver(Solver):
         fields, scalars = self._fields, self._scalars
         edge = self._conditions.edge(time, self._nodes)
         if abs(time - self.time) > ON_GRID * self._dt:
-            fields, scalars = self._between(time, edge)
+            fields, scalars, edge = self._between(time, edge)
+        elif (room := self._room()) is not None:
+            surround_edge(room, time, *self._edge_of(fields, scalars), edge)
+            edge = room.local
         theta, n, y = fields.copy()
         length = float(scalars[paper_step.LENGTH])
         kappa, cosine, sine = np.empty_like(theta), np.cos(theta), np.sin(theta)
@@ -112,8 +118,6 @@ class PaperSolver(Solver):
         center = tangent_angle.centroid(length, area, cosine, sine, x, z)
         origin_x = float(scalars[paper_step.ORIGIN_X])
         origin_y = float(scalars[paper_step.ORIGIN_Y])
-        tangent = (cosine, sine)
-        edge = placed(self._surroundings, time, x + origin_x, z + origin_y, tangent, edge)
         laws, tension = self._conditions.laws, float(scalars[paper_step.TENSION])
         off_rate, velocity, friction = pointwise(laws, y, n, tension, kappa, edge)
         return Frame(
@@ -145,6 +149,8 @@ class PaperSolver(Solver):
             time, fields, scalars = self._previous
             saved["previous_fields"] = fields
             saved["previous_scalars"] = np.append(scalars, time)
+        if self._around is not None:
+            saved["motion"] = self._around.motion.copy()
         return saved
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
@@ -152,6 +158,8 @@ class PaperSolver(Solver):
         self._steps_from_anchor, self._steps = (int(value) for value in checkpoint["counters"])
         self._fields = np.array(checkpoint["fields"], dtype=float)
         self._scalars = np.array(checkpoint["scalars"], dtype=float)
+        if self._around is not None and "motion" in checkpoint:
+            self._around.motion[:] = checkpoint["motion"]
         self._previous = None
         if "previous_fields" in checkpoint:
             scalars = np.array(checkpoint["previous_scalars"], dtype=float)
@@ -186,8 +194,7 @@ class PaperSolver(Solver):
         area = tangent_angle.enclosed_area(curve.length, cosine, sine, x, z)
         self._scalars[:] = (curve.length, start.tension, *curve.origin, area, gap)
         y[:] = math.log(self._conditions.at(self.time).r_p)
-        edge = self._placed(self.time, self._fields, self._scalars, edge)
-        failed = solve_bonds(self._laws, y, n, start.tension, kappa, edge)
+        failed = self._balance(self.time, self._fields, self._scalars, edge, self._around)
         if failed != SOLVED:
             raise InputError(
                 f"the start has no off-rate r >= 1 that balances the forces at node {failed} "
@@ -199,28 +206,15 @@ class PaperSolver(Solver):
         """Take ``steps`` steps of ``dt``, keeping the state before the last."""
         edge = self._conditions.edge(self.time, self._nodes)
         rate = self._conditions.tension_rate(self.time)
-        theta, n, y = self._fields
         if self._around is not None:
-            self._around.local[:] = self._placed(self.time, self._fields, self._scalars, edge)
+            points = self._edge_of(self._fields, self._scalars)
+            surround_edge(self._around, self.time, *points, edge)
         for part in (steps - 1, 1):
             if part == 0:
                 continue
             if part == 1:
                 self._previous = (self.time, self._fields.copy(), self._scalars.copy())
-            code, node, taken = paper_step.advance(
-                self._laws,
-                self._around,
-                self.time,
-                part,
-                dt,
-                rate,
-                edge,
-                theta,
-                n,
-                y,
-                self._scalars,
-                self._work,
-            )
+            code, node, taken = self._kernel(part, dt, rate, edge)
             self._steps += taken
             self._steps_from_anchor += taken
             self.time = self._step_time(self._steps_from_anchor)
@@ -228,6 +222,25 @@ class PaperSolver(Solver):
                 self._previous = None
                 return self._breakdown(code, node, dt, edge)
         return None
+
+    def _kernel(self, steps: int, dt: float, rate: float, edge: np.ndarray) -> tuple[int, int, int]:
+        """Take steps in place; return a code, the node it is about and the steps taken."""
+        theta, n, y = self._fields
+        code, node, taken = paper_step.advance(
+            self._laws,
+            self._around,
+            self.time,
+            steps,
+            dt,
+            rate,
+            edge,
+            theta,
+            n,
+            y,
+            self._scalars,
+            self._work,
+        )
+        return code, node, taken
 
     def _breakdown(self, code: int, node: int, dt: float, edge: np.ndarray) -> Breakdown:
         time = self.time + dt
@@ -251,27 +264,50 @@ class PaperSolver(Solver):
     def _step_time(self, count: int) -> float:
         return self._anchor + count * self._dt
 
-    def _between(self, time: float, edge: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """State inside the last step, linear in time, with the off-rate of that state."""
+    def _between(self, time: float, edge: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """State inside the last step, linear in time, with the off-rate of that state.
+
+        Returns also the parameters at the nodes.
+        """
         if self._previous is None or not self._previous[0] <= time <= self.time:
             raise ValueError(f"t = {time} is not within the last step, which ends at {self.time}")
         start, fields, scalars = self._previous
         part = (time - start) / (self.time - start)
         fields = fields + part * (self._fields - fields)
         scalars = scalars + part * (self._scalars - scalars)
-        theta, n, y = fields
-        kappa = np.empty_like(theta)
-        tangent_angle.curvature(theta, scalars[paper_step.LENGTH], kappa)
-        edge = self._placed(time, fields, scalars, edge)
-        solve_bonds(self._laws, y, n, scalars[paper_step.TENSION], kappa, edge)
-        return fields, scalars
+        fields[1] = self._linkers_between(part, self._previous[1][1])
+        room = self._room()
+        self._balance(time, fields, scalars, edge, room)
+        return fields, scalars, edge if room is None else room.local
 
-    def _placed(
-        self, time: float, fields: np.ndarray, scalars: np.ndarray, edge: np.ndarray
-    ) -> np.ndarray:
-        """Return the parameters at the nodes from those far from all surroundings."""
-        if self._surroundings is None:
-            return edge
+    def _linkers_between(self, part: float, before: np.ndarray) -> np.ndarray:
+        """Bound fraction in the last step, from that ``before`` it."""
+        between: np.ndarray = before + part * (self._fields[1] - before)
+        return between
+
+    def _room(self) -> Around | None:
+        """Return surroundings to work with, that leave those of the next step as they are."""
+        if self._around is None:
+            return None
+        motion = self._around.motion.copy()
+        return around(self._surroundings, len(self._conditions.laws.rows), self._nodes, motion)
+
+    def _balance(
+        self,
+        time: float,
+        fields: np.ndarray,
+        scalars: np.ndarray,
+        edge: np.ndarray,
+        room: Around | None,
+    ) -> int:
+        """Solve the bonds in place, and fill the parameters at the nodes."""
+        _, n, y = fields
+        tension = float(scalars[paper_step.TENSION])
+        points = self._edge_of(fields, scalars)
+        return int(balance_in_place(self._laws, room, time, *points, tension, n, y, edge))
+
+    def _edge_of(self, fields: np.ndarray, scalars: np.ndarray) -> _Points:
+        """Return x, y, tangent and curvature."""
         theta, length = fields[0], float(scalars[paper_step.LENGTH])
         kappa, x, z = np.empty((3, theta.size))
         tangent_angle.curvature(theta, length, kappa)
@@ -279,7 +315,7 @@ class PaperSolver(Solver):
         tangent_angle.points(length, cosine, sine, kappa, x, z)
         x += scalars[paper_step.ORIGIN_X]
         z += scalars[paper_step.ORIGIN_Y]
-        return placed(self._surroundings, time, x, z, (cosine, sine), edge)
+        return x, z, cosine, sine, kappa
 
 
 def _checked_step(dt: Any, nodes: int, conditions: Conditions) -> float:

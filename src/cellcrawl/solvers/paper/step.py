@@ -16,7 +16,7 @@ import numpy as np
 
 from cellcrawl._compile import kernel
 from cellcrawl.laws.functions import binding, off_rate, partials, velocity
-from cellcrawl.physics.force_balance import SOLVED, solve_bonds
+from cellcrawl.physics.force_balance import SOLVED
 from cellcrawl.solvers.cyclic import solve_cyclic_tridiagonal
 from cellcrawl.solvers.paper.tangent_angle import (
     central_difference,
@@ -26,7 +26,7 @@ from cellcrawl.solvers.paper.tangent_angle import (
     points,
     tangential_velocity,
 )
-from cellcrawl.surroundings.place import surround_edge
+from cellcrawl.surroundings.place import balance_in_place
 
 LENGTH, TENSION, ORIGIN_X, ORIGIN_Y, AREA, CLOSURE = range(6)  # rows of `scalars`
 STEPPED = 0
@@ -151,8 +151,20 @@ def advance(
             for i in range(nodes):
                 x[i] += new[ORIGIN_X]
                 z[i] += new[ORIGIN_Y]
-            surround_edge(around, time + (step + 1) * dt, x, z, cosine, sine, edge)
-        failed = solve_bonds(laws, new_y, new_n, new[TENSION], kappa, local)
+        failed = balance_in_place(
+            laws,
+            around,
+            time + (step + 1) * dt,
+            x,
+            z,
+            cosine,
+            sine,
+            kappa,
+            new[TENSION],
+            new_n,
+            new_y,
+            edge,
+        )
         if failed != SOLVED:
             return NO_ROOT, failed, step
 

@@ -15,6 +15,7 @@ from cellcrawl._compile import kernel
 from cellcrawl.laws.functions import binding, off_rate, partials, velocity
 from cellcrawl.physics.force_balance import SOLVED, solve_bonds
 from cellcrawl.solvers.spline.outline import KAPPA, LOG_R, SPEED, XU, YU, N, X, Y
+from cellcrawl.surroundings.place import balance_in_place
 
 BALANCED, NO_ROOT, NOT_FINITE, NEGATIVE, UNSETTLED = range(5)
 _TOLERANCE = 1e-12  # of the tension, relative
@@ -26,8 +27,42 @@ def solve_balance(
     laws: Any, fields: np.ndarray, sigma: float, shape: np.ndarray, edge: np.ndarray
 ) -> tuple[int, int]:
     """Off-rate of every marker in place from its last value; a code and the marker it is about."""
-    y, n, kappa = fields[LOG_R], fields[N], shape[KAPPA]
-    failed = solve_bonds(laws, y, n, sigma, kappa, edge)
+    failed = solve_bonds(laws, fields[LOG_R], fields[N], sigma, shape[KAPPA], edge)
+    return _told(failed, fields, sigma, shape)
+
+
+@kernel
+def solve_balance_in_place(
+    laws: Any,
+    around: Any,
+    time: float,
+    fields: np.ndarray,
+    sigma: float,
+    shape: np.ndarray,
+    edge: np.ndarray,
+) -> tuple[int, int]:
+    """The same after the parameters in place, which `around` then holds if it is not None."""
+    failed = balance_in_place(
+        laws,
+        around,
+        time,
+        fields[X],
+        fields[Y],
+        shape[XU],
+        shape[YU],
+        shape[KAPPA],
+        sigma,
+        fields[N],
+        fields[LOG_R],
+        edge,
+    )
+    return _told(failed, fields, sigma, shape)
+
+
+@kernel
+def _told(failed: int, fields: np.ndarray, sigma: float, shape: np.ndarray) -> tuple[int, int]:
+    """A code and a marker from what `solve_bonds` returns."""
+    n, kappa = fields[N], shape[KAPPA]
     if failed == SOLVED:
         return BALANCED, 0
     for i in range(n.size):

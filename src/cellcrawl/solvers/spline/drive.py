@@ -12,10 +12,11 @@ from cellcrawl.solvers.spline.balance import (
     BALANCED,
     UNSETTLED,
     fastest_explicit_rate,
-    solve_balance,
+    solve_balance_in_place,
 )
 from cellcrawl.solvers.spline.linkers import LINKER_ROWS
 from cellcrawl.solvers.spline.outline import (
+    KAPPA,
     SHAPE_ROWS,
     XU,
     YU,
@@ -96,12 +97,9 @@ def advance(
         if unevenness(shape) > UNEVEN:
             remesh(fields, shape, spare)
             enclose(scalars[AREA], fields, shape)
-            local = edge
-            if around is not None:
-                now = time + taken * dt
-                surround_edge(around, now, fields[X], fields[Y], shape[XU], shape[YU], edge)
-                local = around.local
-            code, marker = solve_balance(laws, fields, scalars[TENSION], shape, local)
+            code, marker = solve_balance_in_place(
+                laws, around, time + taken * dt, fields, scalars[TENSION], shape, edge
+            )
             if code != BALANCED:
                 copy(before_fields, fields)
                 return code, marker, taken
@@ -113,7 +111,8 @@ def advance(
         local = edge
         if around is not None:
             now = time + taken * dt
-            surround_edge(around, now, fields[X], fields[Y], shape[XU], shape[YU], edge)
+            x, y, kappa = fields[X], fields[Y], shape[KAPPA]
+            surround_edge(around, now, x, y, shape[XU], shape[YU], kappa, edge)
             local = around.local
         rate = fastest_explicit_rate(laws, fields, scalars[TENSION], shape, local, ZIGZAG)
         if not rate * dt < EXPLICIT_LIMIT * LARGEST_PARTS:

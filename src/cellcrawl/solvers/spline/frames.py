@@ -11,24 +11,34 @@ from cellcrawl.laws.law import Law
 from cellcrawl.solvers.base import Frame, pointwise
 from cellcrawl.solvers.spline import balance, outline
 from cellcrawl.solvers.spline.linkers import DIFFUSIVITY, LINKER_ROWS, second_derivative_after
-from cellcrawl.solvers.spline.outline import LOG_R, N, X, Y
+from cellcrawl.solvers.spline.outline import LOG_R, N
 from cellcrawl.solvers.spline.remeshing import SPREAD_ROWS, spread_evenly
-from cellcrawl.surroundings.base import CompiledSurroundings
-from cellcrawl.surroundings.place import placed
+from cellcrawl.surroundings.place import Around, around
 
 
 class World(NamedTuple):
     """Laws and surroundings."""
 
     laws: Law
-    around: CompiledSurroundings | None
+    around: Around | None
 
-    def placed(
-        self, time: float, fields: np.ndarray, shape: np.ndarray, edge: np.ndarray
-    ) -> np.ndarray:
-        """Return the parameters at the markers from those far from all."""
-        tangent = (shape[outline.XU], shape[outline.YU])
-        return placed(self.around, time, fields[X], fields[Y], tangent, edge)
+    def apart(self) -> World:
+        """Return the same, that leave the surroundings of the next step as they are."""
+        own = self.around
+        if own is None:
+            return self
+        rows, nodes = own.local.shape
+        fresh = around(own.compiled, rows, nodes, own.motion.copy())
+        return self._replace(around=fresh)
+
+    def balance(
+        self, time: float, fields: np.ndarray, tension: float, shape: np.ndarray, edge: np.ndarray
+    ) -> tuple[int, int, np.ndarray]:
+        """Solve the bonds in place; a code, a marker, and the parameters at the markers."""
+        code, marker = balance.solve_balance_in_place(
+            self.laws.compiled, self.around, time, fields, tension, shape, edge
+        )
+        return code, marker, edge if self.around is None else self.around.local
 
 
 class State(NamedTuple):
@@ -62,8 +72,7 @@ def rates_of_change(
     """Return the rates of x, y and n at the markers, shape (3, markers), and of the tension."""
     fields, shape = state.fields.copy(), measured(state.fields)
     laws = world.laws.compiled
-    edge = world.placed(state.time, fields, shape, edge)
-    balance.solve_balance(laws, fields, state.tension, shape, edge)
+    _, _, edge = world.apart().balance(state.time, fields, state.tension, shape, edge)
     rates, curved = np.empty((3, fields.shape[1])), np.empty(fields.shape[1])
     area_rate = balance.rates(laws, fields, state.tension, shape, edge, rates)
     spare = np.empty((LINKER_ROWS, fields.shape[1]))
@@ -110,8 +119,7 @@ def frame(world: World, state: State, edge: np.ndarray) -> Frame:
     even = on_even_nodes(markers)
     even_shape = measured(even)
     balanced = even.copy()
-    edge = world.placed(state.time, even, even_shape, edge)
-    code, _ = balance.solve_balance(world.laws.compiled, balanced, state.tension, even_shape, edge)
+    code, _, edge = world.apart().balance(state.time, balanced, state.tension, even_shape, edge)
     if code == balance.BALANCED:  # or a jump of the parameters left none: keep that of before
         even = balanced
     theta = np.unwrap(np.arctan2(even_shape[outline.YU], even_shape[outline.XU]))
@@ -123,8 +131,8 @@ def frame(world: World, state: State, edge: np.ndarray) -> Frame:
     center = outline.centroid(markers, shape)
     return Frame(
         time=state.time,
-        x=even[X],
-        y=even[Y],
+        x=even[outline.X],
+        y=even[outline.Y],
         theta=theta,
         curvature=kappa,
         bound_fraction=even[N],

@@ -15,10 +15,16 @@ from typing import Any
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.solvers.spline.balance import BALANCED, rates, solve_balance, solve_tension
+from cellcrawl.solvers.spline.balance import (
+    BALANCED,
+    NO_ROOT,
+    rates,
+    solve_balance_in_place,
+    solve_tension,
+)
 from cellcrawl.solvers.spline.linkers import DIFFUSIVITY, second_derivative_after
-from cellcrawl.solvers.spline.outline import LOG_R, XU, YU, N, X, Y, copy, enclose, measure
-from cellcrawl.surroundings.place import surround_edge
+from cellcrawl.solvers.spline.outline import KAPPA, LOG_R, XU, YU, N, X, Y, copy, enclose, measure
+from cellcrawl.surroundings.place import SETTLED, UNSETTLED, settle, surround_edge
 
 STAGES = 4
 EXPLICIT_LIMIT = 2.5  # step times decay rate; the explicit part alone is stable up to 3.66
@@ -125,9 +131,9 @@ def step(
             measure(stage, shape)
         local = edge
         if around is not None:
-            surround_edge(
-                around, time + _TIMES[i] * dt, stage[X], stage[Y], shape[XU], shape[YU], edge
-            )
+            now = time + _TIMES[i] * dt
+            x, y, xu, yu, kappa = stage[X], stage[Y], shape[XU], shape[YU], shape[KAPPA]
+            surround_edge(around, now, x, y, xu, yu, kappa, edge)
             local = around.local
         second_derivative_after(stage, local, implicit, shape, own[SPREADING], spare)
         for node in range(stage.shape[1]):
@@ -137,11 +143,20 @@ def step(
             known = tension
             for j in range(i):
                 known += dt * _IMPLICIT[i, j] * tension_slopes[j]
-            code, marker, sigma = solve_tension(
-                laws, stage, sigma, known, implicit * rate, shape, local
-            )
-            if code != BALANCED:
-                return code, marker, tension, area
+            while True:
+                code, marker, sigma = solve_tension(
+                    laws, stage, sigma, known, implicit * rate, shape, local
+                )
+                if code != BALANCED:
+                    return code, marker, tension, area
+                if around is None:
+                    break
+                phi = stage[LOG_R]
+                state = settle(laws, around, now, x, y, xu, yu, kappa, sigma, phi, edge)
+                if state == UNSETTLED:
+                    return NO_ROOT, 0, tension, area
+                if state == SETTLED:
+                    break
         area_slopes[i] = rates(laws, stage, sigma, shape, local, own)
         tension_slopes[i] = rate * area_slopes[i]
 
@@ -156,11 +171,7 @@ def step(
     measure(fields, shape)
     enclose(area, fields, shape)
     copy(stage[LOG_R:], fields[LOG_R:])
-    local = edge
-    if around is not None:
-        surround_edge(around, time + dt, fields[X], fields[Y], shape[XU], shape[YU], edge)
-        local = around.local
-    code, marker = solve_balance(laws, fields, tension, shape, local)
+    code, marker = solve_balance_in_place(laws, around, time + dt, fields, tension, shape, edge)
     return code, marker, tension, area
 
 

@@ -49,8 +49,8 @@ class SplineSolver(Solver):
     ) -> None:
         self._conditions = conditions
         self._laws = conditions.laws.compiled
-        self._world = frames.World(conditions.laws, conditions.around())
-        self._around = around(self._world.around, len(conditions.laws.rows), nodes)
+        self._around = around(conditions.around(), len(conditions.laws.rows), nodes)
+        self._world = frames.World(conditions.laws, self._around)
         self._nodes = self.checked_nodes(nodes)
         self._dt = real_number("dt", dt, 1e-7, 0.1)
         self._anchor = time  # steps are counted from here: the start, or the last break
@@ -104,7 +104,7 @@ class SplineSolver(Solver):
         return np.column_stack([even[X], even[Y]])
 
     def checkpoint(self) -> dict[str, np.ndarray]:
-        return {
+        saved = {
             "clock": np.array([self.time, self._anchor, self._before_time]),
             "counters": np.append(self._counters, self._steps_from_anchor),
             "fields": self._fields.copy(),
@@ -112,6 +112,9 @@ class SplineSolver(Solver):
             "before_fields": self._before_fields.copy(),
             "before_scalars": self._before_scalars.copy(),
         }
+        if self._around is not None:
+            saved["motion"] = self._around.motion.copy()
+        return saved
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
         self.time, self._anchor, self._before_time = (float(t) for t in checkpoint["clock"])
@@ -121,6 +124,8 @@ class SplineSolver(Solver):
         self._scalars = np.array(checkpoint["scalars"], dtype=float)
         self._before_fields = np.array(checkpoint["before_fields"], dtype=float)
         self._before_scalars = np.array(checkpoint["before_scalars"], dtype=float)
+        if self._around is not None and "motion" in checkpoint:
+            self._around.motion[:] = checkpoint["motion"]
         if self._scalars.size == drive.AREA:  # saved by 0.1.0, whose tension went with any area
             area = outline.area(self._fields, frames.measured(self._fields))
             self._scalars = np.append(self._scalars, area)
@@ -158,8 +163,7 @@ class SplineSolver(Solver):
                 f"{self._nodes} nodes are too few for this start: its edge turns by {turn:.2g} "
                 f"radians from node to node at node {marker}; give more nodes"
             )
-        edge = self._world.placed(self.time, fields, shape, edge)
-        code, marker = balance.solve_balance(self._laws, fields, start.tension, shape, edge)
+        code, marker, _ = self._world.balance(self.time, fields, start.tension, shape, edge)
         if code != balance.BALANCED:
             raise InputError(
                 f"the start has no off-rate r >= 1 that balances the forces at node {marker} "
@@ -207,11 +211,10 @@ class SplineSolver(Solver):
         self._anchor, self._steps_from_anchor, self.time = end, 0, end
         fields = self._fields
         shape = frames.measured(fields)
-        edge = self._world.placed(end, fields, shape, self._conditions.edge(end, self._nodes))
         kept = fields[LOG_R].copy()
-        code, marker = balance.solve_balance(
-            self._laws, fields, float(self._scalars[drive.TENSION]), shape, edge
-        )
+        edge = self._conditions.edge(end, self._nodes)
+        tension = float(self._scalars[drive.TENSION])
+        code, marker, _ = self._world.balance(end, fields, tension, shape, edge)
         if code == balance.BALANCED:
             return None
         fields[LOG_R] = kept
