@@ -164,7 +164,7 @@ def settle(setting: Setting, system: System, y: np.ndarray, phi: np.ndarray) -> 
     """
     try:
         root = system.solve(setting, y, phi)
-        mesh = better_mesh(system, root.unknowns)
+        mesh = better_mesh(system, root.unknowns, anew=True)
         if mesh is not None:
             system, y = resampled(system, root.unknowns, mesh)
             root = system.solve(setting, y, np.full(system.nodes, _GUESS))
@@ -200,7 +200,7 @@ def _front(n: np.ndarray, w: np.ndarray) -> tuple[float, float]:
         at -= slope / bend
     odd_part = float(np.sum(power * np.sin(np.angle(waves) + k * at) ** 2)) / total
     front = even_samples(n, np.array([at, at + math.pi]))
-    if front[1] < front[0]:  # few linkers are bound at the front
+    if front[1] > front[0]:  # most linkers are bound at the front
         at += math.pi
     return at % (2.0 * math.pi), math.sqrt(odd_part)
 
@@ -228,7 +228,7 @@ def run_to(
     from cellcrawl.starts import PerturbedCircle
 
     side = 0.0 if mirror else 0.6 * strength
-    bound = {1: (-strength, 0.0), 2: (0.0, side)} if side else {1: (-strength, 0.0)}
+    bound = {1: (strength, 0.0), 2: (0.0, side)} if side else {1: (strength, 0.0)}
     start = PerturbedCircle(bound_fraction=bound)
     return simulate(
         parameters, t_end, start=start, laws=laws, save_every=t_end / 4.0, nodes=512, rtol=1e-5
