@@ -308,8 +308,23 @@ def _meeting(
         value = values[0] - slope * squares[0]  # the branch is a parabola there
     else:
         value = 0.5 * (values[0] + values[1])
-    kind, symmetry = (CIRCLE, "symmetric") if end == "circle" else (PITCHFORK, "")
-    return SpecialPoint(kind, symmetry, walker.name, value, 0.0, before, None, position + 0.5)
+    if end == "circle":
+        value = _nearest_onset(before, walker.name, value)
+        return SpecialPoint(CIRCLE, "symmetric", walker.name, value, 0.0, before, None, position + 0.5)
+    return SpecialPoint(PITCHFORK, "", walker.name, value, 0.0, before, None, position + 0.5)
+
+
+def _nearest_onset(state: SteadyState, name: str, value: float) -> float:
+    """Return where the circle's front neither grows nor decays, next to a value."""
+    from cellcrawl.branches.circle import onsets
+
+    setting = state.setting
+    if setting.rest_area != math.pi:
+        return value  # circles of another size
+    low, high = bounds_of(setting.laws, name)
+    low, high = max(low, value - 0.1 * abs(value)), min(high, value + 0.1 * abs(value))
+    found = onsets(setting.parameters, name, low, high, laws=setting.laws)
+    return min(found, key=lambda one: abs(one - value)) if found else value
 
 
 def _at_value(walker: Walker, value: float) -> SteadyState | None:

@@ -71,6 +71,12 @@ class SpecialPoint:
             return nothing, nothing, 0.0
         return self.state.spread(self.state.block(self.symmetry), self.vector, nodes)
 
+    def branch_off(self, *, amplitude: float = 0.03) -> SteadyState:
+        """Return a state that leaves the branch here; see `cellcrawl.branches.branch_off`."""
+        from cellcrawl.branches.switching import branch_off
+
+        return branch_off(self, amplitude=amplitude)
+
     def dataset(self, amplitude: float = 0.1, nodes: int = 256) -> xr.Dataset:
         """Return the cell, and the cell with the change added and taken away, as three records."""
         from cellcrawl.branches.records import as_dataset

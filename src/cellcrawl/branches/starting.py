@@ -12,8 +12,9 @@ from cellcrawl.arguments import checked
 from cellcrawl.branches.equations import Fields, rates
 from cellcrawl.branches.mesh import even_samples
 from cellcrawl.branches.resolution import better_mesh, choose, resampled
-from cellcrawl.branches.setting import OutOfRange, Setting
-from cellcrawl.branches.state import GLIDING, SteadyState
+from cellcrawl.branches.points import PITCHFORK
+from cellcrawl.branches.setting import OutOfRange, Setting, bounds_of
+from cellcrawl.branches.state import GLIDING, TURNING, SteadyState
 from cellcrawl.branches.system import NotFound, System
 from cellcrawl.curve import fourier
 from cellcrawl.data import decode_attribute, records_with
@@ -263,7 +264,69 @@ def gliding(parameters: Parameters, *, laws: Any = None) -> SteadyState:
             continue
         if found.kind == GLIDING and found.system.mirror:
             return found
+    found = _along_branch(setting, None)
+    if found is not None:
+        return found
     raise InputError(
         f"no gliding state was found at r_on = {parameters.r_on:g}, zeta_1 = "
         f"{parameters.zeta_1:g}: follow one from where cells glide, with gliding(...).continue_in"
     )
+
+
+@checked
+def turning(parameters: Parameters, *, laws: Any = None) -> SteadyState:
+    """Return a steadily turning state at some parameters, stable or not, from nothing.
+
+    A lopsided run is polished; where it does not end in a steady turn, the branch of turning states
+    is followed from the pitchfork at which it leaves the gliding ones.
+
+    Raises
+    ------
+    InputError
+        If neither leads to a turning state.
+    """
+    law = PAPER if laws is None else as_law(laws)
+    setting = Setting(parameters, law)
+    try:
+        run = run_to(parameters, law, False, 80.0, 0.1)
+        if run.attrs["status"] == "completed":
+            found = from_run(run, rest_area=math.pi)
+            if found.kind == TURNING:
+                return found
+    except InputError:
+        pass
+    followed = _along_branch(setting, PITCHFORK)
+    if followed is not None:
+        return followed
+    raise InputError(
+        f"no steadily turning state was found at r_on = {parameters.r_on:g}, zeta_1 = "
+        f"{parameters.zeta_1:g}: follow one from where cells turn, with turning(...).continue_in"
+    )
+
+
+def _along_branch(setting: Setting, leave_at: str | None) -> SteadyState | None:
+    """Follow gliding states in r_on from where they leave the circle, to a cell's parameters.
+
+    With ``leave_at``, the branches that leave at points of that kind are followed.
+    """
+    from cellcrawl.branches.circle import from_circle, onsets
+
+    parameters, laws = setting.parameters, setting.laws
+    low, high = bounds_of(laws, "r_on")
+    for onset in reversed(onsets(parameters, "r_on", low, high, laws=laws)):
+        try:
+            first = from_circle(parameters, "r_on", near=onset, laws=laws)
+            if leave_at is None:
+                branch = first.continue_in("r_on", parameters.r_on, spectra=False)
+                if branch.status == "completed":
+                    return branch.states[-1]
+                continue
+            away = low if onset > 0.5 * (low + high) or onset > parameters.r_on else high
+            branch = first.continue_in("r_on", away, most_states=40)
+            for point in branch.points(leave_at):
+                other = point.branch_off().continue_in("r_on", parameters.r_on, spectra=False)
+                if other.status == "completed":
+                    return other.states[-1]
+        except InputError:
+            continue
+    return None
