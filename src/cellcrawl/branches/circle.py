@@ -1,4 +1,4 @@
-"""The resting circle: its spectrum, its onset of gliding, and the gliding states that leave there."""
+"""The resting circle: its spectrum, the onset of gliding, and the states that leave there."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from cellcrawl.arguments import checked
+from cellcrawl.branches.equations import Fields
 from cellcrawl.branches.mesh import Mesh
 from cellcrawl.branches.setting import Setting, bounds_of
 from cellcrawl.branches.state import SteadyState
@@ -37,8 +38,6 @@ def circle(parameters: Parameters, *, laws: Any = None, nodes: int = _NODES) -> 
     rest = setting.rest
     system = System(Mesh(nodes | 1), mirror=True)
     half = np.zeros(system.nodes)
-    from cellcrawl.branches.equations import Fields
-
     shape = Fields(half, half + rest.bound_fraction, 2.0 * math.pi, rest.tension)
     return SteadyState(setting, system, system.pack(shape), half + rest.bond_force)
 

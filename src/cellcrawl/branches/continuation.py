@@ -191,7 +191,7 @@ def _walk(branch: Branch, walker: Walker, most: int, largest: float, keeper: Any
         bound = low if slope < 0.0 else high
         for end, status in ((branch.to, "completed"), (bound, "bound")):
             reached = (end - value) * slope
-            if 0.0 <= reached and abs(slope) * walker.step >= abs(end - value):
+            if reached >= 0.0 and abs(slope) * walker.step >= abs(end - value):
                 last = _at_value(walker, end)
                 if last is not None:
                     _join(branch, walker, before, last, (slope, slope))
@@ -310,7 +310,9 @@ def _meeting(
         value = 0.5 * (values[0] + values[1])
     if end == "circle":
         value = _nearest_onset(before, walker.name, value)
-        return SpecialPoint(CIRCLE, "symmetric", walker.name, value, 0.0, before, None, position + 0.5)
+        return SpecialPoint(
+            CIRCLE, "symmetric", walker.name, value, 0.0, before, None, position + 0.5
+        )
     return SpecialPoint(PITCHFORK, "", walker.name, value, 0.0, before, None, position + 0.5)
 
 

@@ -100,7 +100,7 @@ class Mesh:
     def alpha(self) -> np.ndarray:
         """Angles along the edge at the nodes, from 0, shape (nodes,)."""
         guess = np.linspace(0.0, 2.0 * math.pi, 40 * self.nodes + 1)
-        alpha = np.interp(self.grid, self.at(guess), guess)
+        alpha = np.asarray(np.interp(self.grid, self.at(guess), guess), dtype=float)
         for _ in range(_NEWTON_STEPS):
             step = (self.at(alpha) - self.grid) / self.density(alpha)
             alpha = alpha - step
@@ -164,7 +164,7 @@ class Mesh:
         """Return a matrix that acts on the first half of what is even (1) or odd (-1)."""
         kept = self.kept
         made = np.array(matrix[:kept, :kept])
-        made[:, 1:] += parity * matrix[:kept, :kept - 1:-1]
+        made[:, 1:] += parity * matrix[:kept, : kept - 1 : -1]
         if parity < 0.0:
             made[:, 0] = 0.0
         return made

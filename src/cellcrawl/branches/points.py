@@ -222,9 +222,15 @@ def crossings(
             kind = _kind(symmetry, value)
             found.append(
                 SpecialPoint(
-                    kind, symmetry, name, state.setting.value(name), abs(value.imag), state,
-                    vector, position + part,
-                )  # fmt: skip
+                    kind,
+                    symmetry,
+                    name,
+                    state.setting.value(name),
+                    abs(value.imag),
+                    state,
+                    vector,
+                    position + part,
+                )
             )
     return sorted(found, key=lambda point: point.position)
 

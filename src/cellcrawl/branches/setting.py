@@ -83,9 +83,7 @@ class Setting:
             parameters = parameters.replace(**{name: float(value)})
         return Setting(parameters, laws, self.rest_area)
 
-    def bonds(
-        self, phi: np.ndarray, n: np.ndarray, sigma: float, kappa: np.ndarray
-    ) -> np.ndarray:
+    def bonds(self, phi: np.ndarray, n: np.ndarray, sigma: float, kappa: np.ndarray) -> np.ndarray:
         """Return the force on the bonds at each node, from any guess.
 
         Raises
@@ -143,7 +141,7 @@ class Setting:
 
 def bounds_of(laws: Law, name: Any) -> tuple[float, float]:
     """Return the values that a parameter, of the model or of the law, may have."""
-    known = {**DESCRIPTIONS, **laws.parameters}
+    known: dict[str, Any] = {**DESCRIPTIONS, **laws.parameters}
     if not isinstance(name, str) or name not in known:
         raise InputError(f"there is no parameter {name!r}: {nearest_name(name, known)}")
     described = known[name]

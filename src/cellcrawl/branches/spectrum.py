@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from cellcrawl.branches.equations import Fields, linear, measure, rates
-from cellcrawl.branches.mesh import Mesh
+from cellcrawl.branches.mesh import Mesh, Operators
 from cellcrawl.branches.setting import Setting
 
 SYMMETRIC, ANTISYMMETRIC, WHOLE = "symmetric", "antisymmetric", ""
@@ -81,11 +81,12 @@ class Block:
         By inverse iteration, from any ``vector`` of a state nearby.
         """
         matrix, size = self.reduced, self.reduced.shape[0]
+        x: np.ndarray
         if vector is None:
             x = np.random.default_rng(0).normal(size=size).astype(complex)
         else:
-            x = self.basis.T @ vector.astype(complex)
-        x /= np.linalg.norm(x)
+            x = self.basis.T @ np.asarray(vector, dtype=complex)
+        x = x / np.linalg.norm(x)
         eye = np.eye(size)
         real = abs(value.imag) < 1e-12
         shift = complex(value.real if real else value)
@@ -126,6 +127,7 @@ def blocks(
     ``phi``, the guess of the force on the bonds, has half the edge's nodes then.
     """
     mirror = phi.size == mesh.kept
+    parts: tuple[tuple[str, Operators], ...]
     if mirror:
         half = Fields(shape.w[: mesh.kept], shape.n[: mesh.kept], shape.length, shape.sigma)
         now = rates(setting, mesh.symmetric, half, phi)

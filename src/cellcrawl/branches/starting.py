@@ -11,8 +11,8 @@ import xarray as xr
 from cellcrawl.arguments import checked
 from cellcrawl.branches.equations import Fields, rates
 from cellcrawl.branches.mesh import even_samples
-from cellcrawl.branches.resolution import better_mesh, choose, resampled
 from cellcrawl.branches.points import PITCHFORK
+from cellcrawl.branches.resolution import better_mesh, choose, resampled
 from cellcrawl.branches.setting import OutOfRange, Setting, bounds_of
 from cellcrawl.branches.state import GLIDING, TURNING, SteadyState
 from cellcrawl.branches.system import NotFound, System
@@ -24,7 +24,6 @@ from cellcrawl.laws.law import PAPER, Law
 from cellcrawl.laws.rest import rest_state
 from cellcrawl.parameters import Parameters
 from cellcrawl.simulation.units import DIMENSIONLESS, units_of
-from cellcrawl.starts.base import CellState
 from cellcrawl.validation import real_number
 
 _NEEDED: Final = ("x", "y", "theta", "length", "bound_fraction", "tension", "area")
@@ -264,9 +263,9 @@ def gliding(parameters: Parameters, *, laws: Any = None) -> SteadyState:
             continue
         if found.kind == GLIDING and found.system.mirror:
             return found
-    found = _along_branch(setting, None)
-    if found is not None:
-        return found
+    followed = _along_branch(setting, None)
+    if followed is not None:
+        return followed
     raise InputError(
         f"no gliding state was found at r_on = {parameters.r_on:g}, zeta_1 = "
         f"{parameters.zeta_1:g}: follow one from where cells glide, with gliding(...).continue_in"

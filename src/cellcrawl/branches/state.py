@@ -127,12 +127,16 @@ class SteadyState:
     @cached_property
     def largest_curvature(self) -> float:
         """Curvature of the sharpest corner."""
-        alpha = np.linspace(0.0, 2.0 * math.pi, 8 * self.mesh.nodes, endpoint=False)
-        values = self.mesh.values(self._rates.kappa, alpha)
-        k = int(np.argmax(values))
-        left, top, right = values[k - 1], values[k], values[(k + 1) % values.size]
-        bend = left - 2.0 * top + right
-        return float(top - (right - left) ** 2 / (8.0 * bend)) if bend < 0.0 else float(top)
+        kappa, alpha = self._rates.kappa, self.mesh.alpha
+        width = 2.0 * math.pi / self.mesh.nodes
+        centre = float(alpha[int(np.argmax(kappa))])
+        top = float(kappa.max())
+        for _ in range(6):
+            near = centre + np.linspace(-width, width, 33)
+            values = self.mesh.values(kappa, near)
+            k = int(np.argmax(values))
+            centre, top, width = float(near[k]), float(values[k]), width / 8.0
+        return top
 
     @property
     def blocks(self) -> tuple[Block, ...]:
@@ -153,9 +157,7 @@ class SteadyState:
         values = {block.symmetry: block.eigenvalues for block in self.blocks}
         neutral = np.concatenate([block.neutral for block in self.blocks])
         kept = {"eigenvalues": values, "neutral": neutral}
-        return SteadyState(
-            self.setting, self.system, self.unknowns, self.phi, self.residual, kept
-        )
+        return SteadyState(self.setting, self.system, self.unknowns, self.phi, self.residual, kept)
 
     @property
     def eigenvalues_by_symmetry(self) -> dict[str, np.ndarray]:
@@ -272,15 +274,14 @@ class SteadyState:
 
     @checked
     def perturbed(self, index: int = 0, amplitude: float = 1e-4, phase: float = 0.0) -> CellState:
-        """Return the cell with one of its eigenvectors added, largest change of angle or bound
-        fraction ``amplitude``, on 1024 nodes.
+        """Return the cell with one of its eigenvectors added, on 1024 nodes.
 
         Parameters
         ----------
         index : int
             Which of `eigenvalues`.
         amplitude : float
-            Below 0.1 either way.
+            Largest change of angle or bound fraction, up to 0.1 either way.
         phase : float
             Of a complex eigenvector, in rad.
         """

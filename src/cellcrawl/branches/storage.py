@@ -1,10 +1,9 @@
-"""A branch as one file, written as it grows, that goes on after a kill and says if it is damaged."""
+"""A branch as one file, written as it grows: it goes on after a kill and says if damaged."""
 
 from __future__ import annotations
 
 import contextlib
 import json
-import os
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -79,7 +78,7 @@ class Keeper:
 def write(branch: Branch, walker: Walker, path: Path) -> None:
     """Write a branch, in the place of what is there only once all is written."""
     first = branch.states[0]
-    header = {
+    header: dict[str, Any] = {
         "name": branch.name,
         "to": branch.to,
         "status": branch.status,
@@ -136,7 +135,7 @@ def write(branch: Branch, walker: Walker, path: Path) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         dataset.to_netcdf(beside, engine="h5netcdf", encoding=encoding)
-        os.replace(beside, path)
+        beside.replace(path)
     except OSError as error:
         with contextlib.suppress(OSError):
             beside.unlink(missing_ok=True)
@@ -226,18 +225,17 @@ def _read(path: Path) -> tuple[Branch, Walker]:
     if header["spectra"]:
         neutral = _complex_parts(arrays, "neutral")
         for k, symmetry in enumerate(header["symmetries"]):
-            for state, values in zip(states, _complex_parts(arrays, f"eigenvalues_{k}")):
+            found = _complex_parts(arrays, f"eigenvalues_{k}")
+            for state, values in zip(states, found, strict=False):
                 state._spectrum.setdefault("eigenvalues", {})[symmetry] = values
-        for state, values in zip(states, neutral):
+        for state, values in zip(states, neutral, strict=False):
             state._spectrum["neutral"] = values
     branch = Branch(name, header["to"], states[:count], spectra=header["spectra"])
     branch.status, branch.message = header["status"], header["message"]
     vectors = iter(_complex_parts(arrays, "vector"))
     for point, state in zip(header["points"], states[count:-1], strict=True):
         vector = next(vectors) if point.pop("has_vector") else None
-        branch.special_points.append(
-            SpecialPoint(name=name, state=state, vector=vector, **point)
-        )
+        branch.special_points.append(SpecialPoint(name=name, state=state, vector=vector, **point))
     walker = Walker(name, header["weight"], states[-1], arrays["tangent"], header["step"])
     last = branch.states[-1]
     if np.array_equal(last.unknowns, walker.state.unknowns):

@@ -42,7 +42,7 @@ class Root(NamedTuple):
 
 @dataclass(frozen=True)
 class System:
-    """Equations and unknowns on a mesh; ``mirror`` for gliding cells, half an edge of which is kept.
+    """Equations and unknowns on a mesh; with ``mirror`` one half of the edge is kept.
 
     Attributes
     ----------
@@ -150,7 +150,7 @@ class System:
         scale = max(setting.tension_rate, 1.0)
         stiffness = setting.tension_rate / scale
         area_by = self._folded(of_whole.area_by) if self.mirror else of_whole.area_by
-        w = keep[:count - 1] if self.mirror else keep[:count]
+        w = keep[: count - 1] if self.mirror else keep[:count]
         first = w.size
         jac[m, :first] = -stiffness * area_by[w]
         jac[m, m - 1] = -stiffness * 2.0 * of_whole.area / shape.length
@@ -172,9 +172,7 @@ class System:
         g, slope = self.mesh.whole.mean, self.mesh.whole.angle_slope
         along_w, along_n = 1.0 + slope @ reference.w, slope @ reference.n
         nothing = np.zeros(self.nodes)
-        return np.array(
-            [np.concatenate([g, nothing]), np.concatenate([g * along_w, g * along_n])]
-        )
+        return np.array([np.concatenate([g, nothing]), np.concatenate([g * along_w, g * along_n])])
 
     def _folded(self, row: np.ndarray) -> np.ndarray:
         """Return a row on the whole edge as one on half of it, for an odd angle."""
