@@ -8,6 +8,7 @@ nothing, `continue_in` follows it as a parameter changes and names the points on
 from cellcrawl.branches.branch import Branch
 from cellcrawl.branches.circle import circle, from_circle, onset_slope, onsets
 from cellcrawl.branches.continuation import ENDS, continue_in
+from cellcrawl.branches.curves import CURVE_ENDS, PointCurve, curve_of
 from cellcrawl.branches.points import MEANINGS, SpecialPoint
 from cellcrawl.branches.setting import Setting
 from cellcrawl.branches.starting import from_run, gliding, turning
@@ -16,15 +17,18 @@ from cellcrawl.branches.storage import open_branch, resume_branch
 from cellcrawl.branches.switching import branch_off
 
 __all__ = [
+    "CURVE_ENDS",
     "ENDS",
     "MEANINGS",
     "Branch",
+    "PointCurve",
     "Setting",
     "SpecialPoint",
     "SteadyState",
     "branch_off",
     "circle",
     "continue_in",
+    "curve_of",
     "from_circle",
     "from_run",
     "gliding",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
@@ -14,6 +14,9 @@ from cellcrawl.branches.spectrum import ANTISYMMETRIC, SYMMETRIC, unstable_count
 from cellcrawl.branches.state import SteadyState
 from cellcrawl.branches.system import NotFound, System
 from cellcrawl.parameters import Parameters
+
+if TYPE_CHECKING:
+    from cellcrawl.branches.curves import PointCurve
 
 FOLD, HOPF, PITCHFORK, CIRCLE, BRANCHING = "fold", "Hopf", "pitchfork", "circle", "branch point"
 MEANINGS: Final = {
@@ -70,6 +73,12 @@ class SpecialPoint:
             nothing = np.zeros(nodes, complex)
             return nothing, nothing, 0.0
         return self.state.spread(self.state.block(self.symmetry), self.vector, nodes)
+
+    def continue_in(self, second: str, **options: Any) -> PointCurve:
+        """Follow the point in a second parameter; see `cellcrawl.branches.curve_of`."""
+        from cellcrawl.branches.curves import curve_of
+
+        return curve_of(self, second, **options)
 
     def branch_off(self, *, amplitude: float = 0.03) -> SteadyState:
         """Return a state that leaves the branch here; see `cellcrawl.branches.branch_off`."""

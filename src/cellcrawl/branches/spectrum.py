@@ -83,7 +83,7 @@ class Block:
         matrix, size = self.reduced, self.reduced.shape[0]
         x: np.ndarray
         if vector is None:
-            x = np.random.default_rng(0).normal(size=size).astype(complex)
+            x = np.array(np.random.default_rng(0).normal(size=size), dtype=complex)
         else:
             x = self.basis.T @ np.asarray(vector, dtype=complex)
         x = x / np.linalg.norm(x)
