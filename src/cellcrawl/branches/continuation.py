@@ -25,6 +25,7 @@ from cellcrawl.branches.setting import bounds_of
 from cellcrawl.branches.state import AT_REST, SteadyState
 from cellcrawl.branches.system import NotFound, Root, System
 from cellcrawl.errors import InputError
+from cellcrawl.threads import on_one_thread
 from cellcrawl.validation import real_number, whole_number
 
 _FIRST, _LARGEST, _SMALLEST = 0.02, 0.12, 1e-6
@@ -161,6 +162,7 @@ def _jacobian(state: SteadyState) -> np.ndarray:
     return system.jacobian(state.setting, y, now, of_whole, reference)
 
 
+@on_one_thread
 def walk(
     branch: Branch,
     walker: Walker,

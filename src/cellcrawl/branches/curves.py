@@ -22,6 +22,7 @@ from cellcrawl.branches.setting import OutOfRange, Setting, bounds_of
 from cellcrawl.branches.state import AT_REST, SteadyState
 from cellcrawl.branches.system import NotFound
 from cellcrawl.errors import InputError
+from cellcrawl.threads import on_one_thread
 from cellcrawl.validation import real_number, whole_number
 
 if TYPE_CHECKING:
@@ -108,6 +109,7 @@ class PointCurve:
 
 
 @checked
+@on_one_thread
 def curve_of(
     point: SpecialPoint,
     second: str,

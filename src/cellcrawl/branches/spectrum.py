@@ -17,6 +17,7 @@ import numpy as np
 from cellcrawl.branches.equations import Fields, linear, measure, rates
 from cellcrawl.branches.mesh import Mesh, Operators
 from cellcrawl.branches.setting import Setting
+from cellcrawl.threads import on_one_thread
 
 SYMMETRIC, ANTISYMMETRIC, WHOLE = "symmetric", "antisymmetric", ""
 _MARGINAL = 1e-7
@@ -60,6 +61,7 @@ class Block:
         return np.asarray(self.basis.T @ self.matrix @ self.basis)
 
     @cached_property
+    @on_one_thread
     def eigenvalues(self) -> np.ndarray:
         """Growth rates, complex, the largest real part first."""
         return ordered(np.linalg.eigvals(self.reduced))

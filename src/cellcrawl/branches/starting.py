@@ -24,6 +24,7 @@ from cellcrawl.laws.law import PAPER, Law
 from cellcrawl.laws.rest import rest_state
 from cellcrawl.parameters import Parameters
 from cellcrawl.simulation.units import DIMENSIONLESS, units_of
+from cellcrawl.threads import on_one_thread
 from cellcrawl.validation import real_number
 
 _NEEDED: Final = ("x", "y", "theta", "length", "bound_fraction", "tension", "area")
@@ -154,6 +155,7 @@ def polished(
     return settle(setting, system, y, np.full(system.nodes, _GUESS))
 
 
+@on_one_thread
 def settle(setting: Setting, system: System, y: np.ndarray, phi: np.ndarray) -> SteadyState:
     """Return the state near some unknowns, on nodes that resolve it.
 

@@ -21,12 +21,14 @@ from cellcrawl.branches.spectrum import ANTISYMMETRIC
 from cellcrawl.branches.state import SteadyState
 from cellcrawl.branches.system import NotFound, System
 from cellcrawl.errors import InputError
+from cellcrawl.threads import on_one_thread
 from cellcrawl.validation import real_number
 
 _STILL = 1e-5  # turning rate of a state that has fallen back onto gliding ones
 
 
 @checked
+@on_one_thread
 def branch_off(point: SpecialPoint, *, amplitude: float = 0.03) -> SteadyState:
     """Return a state on the branch that leaves at a special point.
 
