@@ -32,6 +32,7 @@ _FIRST, _LARGEST, _SMALLEST = 0.02, 0.1, 1e-5
 _DIFFERENCE = 1e-4
 _SETTLED = 1e-9
 _MOST_STEPS = 12
+_ALIKE = 0.8
 _SLOW = 0.02  # angular frequency at which a pair of growth rates is nearly a double zero
 CURVE_ENDS: Final = {
     "border": "the curve left the box of parameters asked for",
@@ -316,9 +317,8 @@ class _Tracer:
         size = system.size
         wide = np.hstack([at.jacobian, self._by(at.state)])
         weights = np.concatenate([system.weights(), self.weights])
-        # The two null vectors of a wide matrix: the last of its right singular ones.
-        _, _, right = np.linalg.svd(wide)
-        plane = right[size:]
+        rotated, _ = np.linalg.qr(wide.T, mode="complete")
+        plane = rotated.T[size:]
         made: list[np.ndarray] = []
         for vector in plane:
             for other in made:
@@ -389,9 +389,17 @@ class _Tracer:
             return self._on_surface(at, plane, step * ahead + across * up)
 
         try:
-            return _secant(found, slope, step)
+            after = _secant(found, slope, step)
         except (NotFound, np.linalg.LinAlgError):
             return None
+        return after if after is not None and _is_the_same(at, after) else None
+
+
+def _is_the_same(before: _At, after: _At) -> bool:
+    """Whether two growth rates at neighbouring states belong to one change of the cell."""
+    size = np.linalg.norm(before.vector) * np.linalg.norm(after.vector)
+    alike = abs(complex(np.vdot(before.vector, after.vector))) / size
+    return bool(alike > _ALIKE)
 
 
 def _secant(found: Callable[[float], _At], slope: float, step: float) -> _At | None:

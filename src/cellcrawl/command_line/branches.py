@@ -66,8 +66,8 @@ def branches(
     """Follow gliding cells in r_on from where they leave the resting circle.
 
     Prints every point at which they lose or gain their hold, and what is lost there: the mirror
-    axis (pitchfork: they begin to turn), steadiness (Hopf point) or existence (fold). Branches are files
-    that `cellcrawl.branches.open_branch` reads.
+    axis (pitchfork: they begin to turn), steadiness (Hopf point) or existence (fold). Branches are
+    files that `cellcrawl.branches.open_branch` reads.
 
     \b
     Examples

@@ -12,6 +12,9 @@ from cellcrawl.arguments import checked
 from cellcrawl.branches import Branch, PointCurve
 from cellcrawl.branches.state import TURNING
 from cellcrawl.errors import InputError
+from cellcrawl.laws.law import PAPER
+from cellcrawl.linear import marginal_curves
+from cellcrawl.parameters import DESCRIPTIONS
 from cellcrawl.plot.mode_symbols import MODE_SYMBOLS
 from cellcrawl.plot.style import COLUMN, INK, axes_or_new
 from cellcrawl.plot.symbols import PARAMETER_NAMES, parameter_label
@@ -108,6 +111,7 @@ def branch(
 def boundaries(
     curves: Sequence[PointCurve],
     *,
+    onset: bool = True,
     legend: bool = True,
     ax: Axes | None = None,
 ) -> Axes:
@@ -117,6 +121,8 @@ def boundaries(
     ----------
     curves : sequence of PointCurve
         Over the same two parameters; the first is drawn to the right.
+    onset : bool
+        Draw too where the resting circle begins to glide, under the paper's laws.
     legend : bool
         Say what each is.
     ax : Axes, optional
@@ -144,6 +150,15 @@ def boundaries(
             seen[label] = axes.plot(
                 values[:, 0], values[:, 1], color=colour, linestyle=style, linewidth=1.4, zorder=4
             )[0]
+        box = axes.get_xlim(), axes.get_ylim()
+        setting = curves[0].points[0].state.setting
+        if onset and setting.laws == PAPER and set(curves[0].names) <= set(DESCRIPTIONS):
+            ranges = dict(zip(curves[0].names, box, strict=True))
+            for line in marginal_curves(setting.parameters, 1, **_within(ranges)):
+                label = "the round cell begins to glide"
+                seen[label] = axes.plot(*line.T, color=INK, linewidth=1.0, zorder=3)[0]
+            axes.set_xlim(box[0])
+            axes.set_ylim(box[1])
         if left is not None and right is not None:
             axes.set_xlim(left)
             axes.set_ylim(right)
@@ -151,8 +166,18 @@ def boundaries(
             axes.set_xlabel(_label(curves[0].names[0]))
             axes.set_ylabel(_label(curves[0].names[1]))
         if legend:
-            axes.legend(list(seen.values()), list(seen), fontsize="small")
+            axes.figure.legend(
+                list(seen.values()), list(seen), loc="outside upper center", ncols=2, fontsize=7
+            ) if ax is None else axes.legend(list(seen.values()), list(seen), fontsize="small")
     return axes
+
+
+def _within(ranges: dict[str, tuple[float, float]]) -> dict[str, tuple[float, float]]:
+    """Return ranges of parameters cut to what they may be."""
+    return {
+        name: (max(low, DESCRIPTIONS[name].low), min(high, DESCRIPTIONS[name].high))
+        for name, (low, high) in ranges.items()
+    }
 
 
 def _label(name: str) -> str:
