@@ -167,7 +167,7 @@ def boundaries(
             axes.set_ylabel(_label(curves[0].names[1]))
         if legend:
             axes.figure.legend(
-                list(seen.values()), list(seen), loc="outside upper center", ncols=2, fontsize=7
+                list(seen.values()), list(seen), loc="outside upper center", fontsize=7
             ) if ax is None else axes.legend(list(seen.values()), list(seen), fontsize="small")
     return axes
 

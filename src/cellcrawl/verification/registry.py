@@ -9,6 +9,7 @@ from typing import Final
 from cellcrawl.errors import InputError, nearest_name
 from cellcrawl.verification import (
     agreement,
+    branches,
     claims_diagram,
     claims_linear,
     claims_modes,
@@ -53,6 +54,8 @@ CHECKS: Final[tuple[Check, ...]] = (
     Check("spectra", "laws", laws.spectra),
     Check("drifts", "laws", laws.drifts),
     Check("limits", "laws", laws.limits),
+    Check("steady-states", "branches", branches.states),
+    Check("crossings", "branches", branches.crossings),
     Check("breathing", "claims-linear", claims_linear.breathing),
     Check("translation", "claims-linear", claims_linear.translation),
     Check("dispersion", "claims-linear", claims_linear.dispersion),
@@ -82,6 +85,7 @@ PARTS: Final[dict[str, str]] = {
     "agreement": "Agreement between solvers, and with independent programs",
     "restart": "Restart to the same bits",
     "laws": "Other laws and surroundings: theory and limits",
+    "branches": "Branches: steady cells and where they lose their hold",
     "claims-linear": "Claims of the paper: linear stability",
     "claims-numerics": "Claims of the paper: its numerics",
     "claims-onset": "Claims of the paper: how a round cell sets off",
