@@ -19,7 +19,7 @@ from cellcrawl.laws.law import PAPER, Law
 from cellcrawl.laws.rest import rest_state
 from cellcrawl.linear.any_law import law_matrix
 from cellcrawl.parameters import Parameters
-from cellcrawl.validation import real_number
+from cellcrawl.validation import real_number, whole_number
 
 _NODES = 65
 _SAMPLES = 400
@@ -31,11 +31,12 @@ _SMALLEST: Final = 3e-3
 def circle(parameters: Parameters, *, laws: Any = None, nodes: int = _NODES) -> SteadyState:
     """Return the resting circle as a steady state, with growth rates by symmetry.
 
-    ``nodes`` is odd; wavenumbers up to half of it are there.
+    ``nodes`` is 17 to 2001, made odd; wavenumbers up to half of it are there.
     """
     law = PAPER if laws is None else as_law(laws)
     setting = Setting(parameters, law)
     rest = setting.rest
+    nodes = whole_number("nodes", nodes, 17, 2001)
     system = System(Mesh(nodes | 1), mirror=True)
     half = np.zeros(system.nodes)
     shape = Fields(half, half + rest.bound_fraction, 2.0 * math.pi, rest.tension)
