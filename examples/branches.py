@@ -23,8 +23,9 @@ turning = gliding.points("pitchfork")[0].branch_off().continue_in("r_on", 43.5)
 print(turning)
 
 cc.plot.branch([gliding, turning]).figure.savefig(folder / "branches.png", dpi=150)
-fork = gliding.points("pitchfork")[0].continue_in("zeta_1", within={"zeta_1": (520, 620)})
-wobble = gliding.points("Hopf")[-1].continue_in("zeta_1", within={"zeta_1": (520, 620)})
-spin = turning.points("Hopf")[0].continue_in("zeta_1", within={"zeta_1": (520, 620)})
+box = {"zeta_1": (440, 640), "r_on": (8, 70)}
+fork = gliding.points("pitchfork")[0].continue_in("zeta_1", within=box)
+wobble = gliding.points("Hopf")[-1].continue_in("zeta_1", within=box)
+spin = turning.points("Hopf")[0].continue_in("zeta_1", within=box)
 cc.plot.boundaries([fork, wobble, spin]).figure.savefig(folder / "boundaries.png", dpi=150)
 print(fork, wobble, spin, sep="\n")

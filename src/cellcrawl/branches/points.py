@@ -14,6 +14,7 @@ from cellcrawl.branches.spectrum import ANTISYMMETRIC, SYMMETRIC, unstable_count
 from cellcrawl.branches.state import SteadyState
 from cellcrawl.branches.system import NotFound, System
 from cellcrawl.parameters import Parameters
+from cellcrawl.threads import on_one_thread
 
 if TYPE_CHECKING:
     from cellcrawl.branches.curves import PointCurve
@@ -208,6 +209,7 @@ def zero_between(function: Callable[[float], float], left: float, right: float) 
     return part
 
 
+@on_one_thread
 def crossings(
     name: str, weight: float, first: SteadyState, last: SteadyState, position: int
 ) -> list[SpecialPoint]:

@@ -56,6 +56,7 @@ class Block:
         return np.asarray(vectors[:, count:])
 
     @cached_property
+    @on_one_thread
     def reduced(self) -> np.ndarray:
         """The linear flow of the cell."""
         return np.asarray(self.basis.T @ self.matrix @ self.basis)
@@ -77,6 +78,7 @@ class Block:
                 found.append(np.linalg.eigvals(q.T @ matrix @ q))
         return np.concatenate(found) if found else np.zeros(0)
 
+    @on_one_thread
     def near(self, value: complex, vector: np.ndarray | None = None) -> tuple[complex, np.ndarray]:
         """Return the eigenvalue nearest to ``value`` and its vector ``(w, n, L)`` of the block.
 
@@ -121,6 +123,7 @@ def unstable_count(values: np.ndarray) -> int:
     return int(np.sum(values.real > _MARGINAL))
 
 
+@on_one_thread
 def blocks(
     setting: Setting, mesh: Mesh, shape: Fields, phi: np.ndarray, slide: float, turn: float
 ) -> tuple[Block, ...]:

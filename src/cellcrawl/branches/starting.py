@@ -99,7 +99,7 @@ def from_run(run: xr.Dataset, *, rest_area: float | None = None) -> SteadyState:
         raise InputError(
             f"this run is not near a steady state at its end: the nearest found has tension "
             f"{found.tension:.6g} and length {found.length:.6g}, the run {sigma:.6g} and "
-            f"{length:.6g}; run longer, or see its orbit with cellcrawl.branches.orbit"
+            f"{length:.6g}; run longer"
         )
     return found
 
@@ -115,8 +115,8 @@ def _refuse_unsteady(records: xr.Dataset) -> None:
     if turns >= 2 and spread > _FAR_TENSION / 4.0:
         raise InputError(
             f"this run is not steady at its end: its tension goes up and down by {100 * spread:.2g}"
-            " % (a cell that zigzags, rotates or wanders); see its orbit with "
-            "cellcrawl.branches.orbit, or follow a gliding state with continue_in"
+            " % (a cell that zigzags, rotates or wanders); cellcrawl.branches.gliding finds the "
+            "gliding cell beside it, stable or not"
         )
 
 

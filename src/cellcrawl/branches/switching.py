@@ -56,8 +56,8 @@ def branch_off(point: SpecialPoint, *, amplitude: float = 0.03) -> SteadyState:
         )  # fmt: skip
     if point.kind == HOPF:
         raise InputError(
-            "orbits, not states, leave at a Hopf point: see cellcrawl.branches.orbit for the "
-            "orbit of a run"
+            "oscillating cells, not steady ones, leave at a Hopf point: simulate from "
+            "point.state.perturbed(...) to see one"
         )
     if point.kind not in (PITCHFORK, BRANCHING) or point.vector is None:
         raise InputError(f"no other branch leaves at this {point.kind}")

@@ -140,7 +140,7 @@ def boundaries(
     if not curves or len({curve.names for curve in curves}) > 1:
         raise InputError("give one curve or more, all over the same two parameters")
     seen: dict[str, Any] = {}
-    with axes_or_new(ax, COLUMN, 0.8 * COLUMN) as axes:
+    with axes_or_new(ax, COLUMN, COLUMN) as axes:
         left, right = (axes.get_xlim(), axes.get_ylim()) if ax is not None else (None, None)
         for curve in curves:
             colour, style, label = _CURVES.get(
