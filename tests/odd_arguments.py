@@ -161,6 +161,35 @@ def _calls(folder: Path) -> Iterator[Call]:
     yield call(cc.surroundings.Gradient, parameter="r_on", x=1.0, least=0.0)
     yield call(cc.surroundings.TensionGradient, mu=100.0)
     yield call(cc.surroundings.AlongEdge, parameter="v_p", front=0.1, bend=-0.1, slow=0.02)
+    # branches
+    ways = cc.branches
+    cell = cc.Parameters(r_on=56, zeta_1=560)
+    slow = ways.from_circle(cell)
+    branch = slow.continue_in("r_on", 54.5)
+    fork = branch.points("pitchfork")[0]
+    (kept := folder / "branch.nc").unlink(missing_ok=True)
+    branch[0].continue_in("r_on", 57.0, output=kept, spectra=False, most_states=2)
+    boundary = ways.curve_of(fork, "zeta_1", most_points=2)
+    yield call(ways.circle, parameters=cell, laws=None, nodes=17)
+    yield call(ways.onsets, parameters=cell, name="r_on", low=50.0, high=60.0, laws=None)
+    yield call(ways.from_circle, parameters=cell, name="r_on", near=57.0, speed=0.01, laws="paper")
+    yield call(ways.onset_slope, parameters=cell, name="r_on", near=57.0, laws=None)
+    yield call(ways.from_run, run=slow.dataset(), rest_area=math.pi)
+    yield call(ways.gliding, parameters=cell, laws=None)
+    yield call(ways.turning, parameters=cell.replace(r_on=50), laws=None)
+    yield call(
+        ways.continue_in, state=branch[-1], name="r_on", to=54.3, output=folder / "b.nc",
+        overwrite=True, spectra=False, most_states=2, largest_step=0.05,
+    )  # fmt: skip
+    yield call(ways.open_branch, path=kept)
+    yield call(ways.resume_branch, path=kept, to=56.9, most_states=3, largest_step=0.1)
+    yield call(ways.branch_off, point=fork, amplitude=0.05)
+    yield call(
+        ways.curve_of, point=fork, second="zeta_1", within={"zeta_1": (559.0, 561.0)},
+        most_points=2, largest_step=0.05,
+    )  # fmt: skip
+    yield call(cc.plot.branch, branches=[branch], quantity="speed", legend=True, ax=ax())
+    yield call(cc.plot.boundaries, curves=[boundary], onset=True, legend=True, ax=ax())
     # starts
     yield call(cc.RandomPerturbation, seed=2, amplitude=1e-4, modes=10)
     yield call(cc.PerturbedCircle, radius={2: (0.1, 0.0)}, bound_fraction={2: (0.1, 0.0)})

@@ -70,6 +70,11 @@ def laws(work: Path) -> None:
     command("examples/laws.py", IMAGES / "laws")
 
 
+def branches(work: Path) -> None:
+    """Gliding and turning cells, and their boundaries."""
+    command("examples/branches.py", IMAGES / "branches")
+
+
 def figures(work: Path) -> None:
     """The paper's figures."""
     folder = work / "reproduction"
@@ -143,6 +148,7 @@ STEPS = (
     Step("cells", ("docs/images/three-cells.png", "docs/images/gallery/*.png"), cells),
     Step("temperature", ("docs/images/temperature/*.png",), temperature),
     Step("laws", ("docs/images/laws/*.png",), laws),
+    Step("branches", ("docs/images/branches/*.png",), branches),
     Step("one-dimensional", ("docs/images/one_dimensional/*.png",), one_dimensional),
     Step("figures", ("docs/images/reproduce/*.png",), figures),
     Step("sweeps", ("docs/images/sweeps/*.png",), sweeps),

@@ -10,6 +10,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from cellcrawl import branches as branches
     from cellcrawl import laws as laws
     from cellcrawl import linear as linear
     from cellcrawl import microscopy as microscopy
@@ -84,6 +85,7 @@ _HOMES = {
     "write_tracks": "microscopy",
 }
 _MODULES = (
+    "branches",
     "laws",
     "linear",
     "microscopy",

@@ -26,6 +26,7 @@ _COMMANDS: Final[dict[str, tuple[str, str]]] = {
     "sweep": ("sweep", "Run a grid of cells; leave a table and a diagram of their modes."),
     "dispersion": ("theory", "Growth rates of every wavenumber, as a table and a picture."),
     "stability": ("theory", "Which wavenumbers grow where, over two parameters."),
+    "branches": ("branches", "Follow gliding and turning cells to where they lose their hold."),
     "reproduce": ("reproduce", "Make the figures and movies of the paper."),
     "classify": ("classify", "Name the motility modes of runs and of tracks."),
     "tracks": ("tracks", "Draw a sheet about tracks: modes, headings, displacements."),

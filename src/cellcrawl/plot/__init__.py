@@ -10,6 +10,7 @@ size, colour map and any other of them for a while. A field has the same colours
 and movie, and units are those of the data.
 """
 
+from cellcrawl.plot.branches import boundaries, branch
 from cellcrawl.plot.cell import cell, snapshots
 from cellcrawl.plot.cycle import cycle
 from cellcrawl.plot.diagram import diagram, measure_map
@@ -27,6 +28,8 @@ from cellcrawl.plot.tracks import compare_tracks, tracks
 from cellcrawl.plot.two_edges import regimes, two_edges
 
 __all__ = [
+    "boundaries",
+    "branch",
     "cell",
     "compare_tracks",
     "cycle",

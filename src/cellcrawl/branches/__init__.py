@@ -1,0 +1,40 @@
+"""Branches: gliding and turning cells computed, followed, and what makes each lose its hold.
+
+A gliding or steadily turning cell is a fixed point of the model without place, direction and choice
+of the first node. `from_run` polishes a run's end into one, `gliding` and `turning` find one from
+nothing, `continue_in` follows it as a parameter changes and names the points on the way.
+"""
+
+from cellcrawl.branches.branch import Branch
+from cellcrawl.branches.circle import circle, from_circle, onset_slope, onsets
+from cellcrawl.branches.continuation import ENDS, continue_in
+from cellcrawl.branches.curves import CURVE_ENDS, PointCurve, curve_of
+from cellcrawl.branches.points import MEANINGS, SpecialPoint
+from cellcrawl.branches.setting import Setting
+from cellcrawl.branches.starting import from_run, gliding, turning
+from cellcrawl.branches.state import SteadyState
+from cellcrawl.branches.storage import open_branch, resume_branch
+from cellcrawl.branches.switching import branch_off
+
+__all__ = [
+    "CURVE_ENDS",
+    "ENDS",
+    "MEANINGS",
+    "Branch",
+    "PointCurve",
+    "Setting",
+    "SpecialPoint",
+    "SteadyState",
+    "branch_off",
+    "circle",
+    "continue_in",
+    "curve_of",
+    "from_circle",
+    "from_run",
+    "gliding",
+    "onset_slope",
+    "onsets",
+    "open_branch",
+    "resume_branch",
+    "turning",
+]

@@ -1,0 +1,181 @@
+"""`cellcrawl branches`: gliding and turning cells followed, and where they lose their hold."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from cellcrawl.command_line.look import Look, look_options
+from cellcrawl.command_line.main import CANCELLED, RUN_FAILED
+from cellcrawl.command_line.options import (
+    cannot_write,
+    make_folder,
+    parameter_options,
+    save_picture,
+    say,
+)
+from cellcrawl.errors import InputError
+from cellcrawl.parameters import Parameters
+
+if TYPE_CHECKING:
+    from cellcrawl.branches import Branch, PointCurve, SpecialPoint
+
+_USUAL = Parameters(zeta_1=560.0)
+_COLUMNS = ("kind", "symmetry", "r_on", "zeta_1", "frequency", "speed", "turning_rate", "tension")
+_GLIDING, _TURNING = "gliding", "turning"
+
+
+@click.command()
+@click.option(
+    "--at-zeta-1",
+    "several",
+    metavar="V1,V2,...",
+    help="Several values of zeta_1, a branch each, as in 540,560,580,600.",
+)
+@click.option(
+    "--to", type=float, default=10.0, show_default=True, metavar="NUMBER", help="Last r_on."
+)
+@click.option("--turning", is_flag=True, help="Follow turning cells too, from their pitchfork.")
+@click.option("--curves", is_flag=True, help="Follow each special point over r_on and zeta_1 too.")
+@click.option(
+    "--output",
+    type=click.Path(path_type=Path, file_okay=False),
+    default=Path("cellcrawl-branches"),
+    show_default=True,
+    metavar="DIR",
+    help="Where branches, the table of special points and the picture go.",
+)
+@click.option("--overwrite", is_flag=True, help="Replace branches that are there.")
+@click.option("--dpi", type=click.IntRange(30, 1200), default=200, show_default=True)
+@look_options
+@parameter_options(_USUAL)
+def branches(
+    several: str | None,
+    to: float,
+    turning: bool,
+    curves: bool,
+    output: Path,
+    overwrite: bool,
+    dpi: int,
+    look: Look,
+    **parameters: Any,
+) -> int:
+    """Follow gliding cells in r_on from where they leave the resting circle.
+
+    Prints every point at which they lose or gain their hold, and what is lost there: the mirror
+    axis (pitchfork: they begin to turn), steadiness (Hopf point) or existence (fold). Branches are
+    files that `cellcrawl.branches.open_branch` reads.
+
+    \b
+    Examples
+      cellcrawl branches
+      cellcrawl branches --at-zeta-1 540,560,580,600 --output crossings
+      cellcrawl branches --turning --curves --elasticity consistent
+    """
+    from cellcrawl import plot
+
+    usual = _USUAL.to_dict()
+    cell = Parameters(**{**usual, **{k: v for k, v in parameters.items() if v is not None}})
+    cells = [cell] if several is None else [cell.replace(zeta_1=v) for v in _numbers(several)]
+    make_folder(output)
+    made: list[Branch] = []
+    points: list[SpecialPoint] = []
+    try:
+        for one in cells:
+            found = _followed(one, to, turning, output, overwrite)
+            made += found
+            for branch in found:
+                points += branch.special_points
+                _tell(branch)
+        say(f"special points  {len(points)}")
+        _write(points, output / "special_points.csv")
+        lines = _curves(points, cell, to) if curves else []
+    except KeyboardInterrupt:
+        say("stopped; what was followed is in the files")
+        return CANCELLED
+    with look.used():
+        axes = plot.branch(made)
+        save_picture(axes.figure, output / "branches.png", dpi)
+        if lines:
+            save_picture(plot.boundaries(lines).figure, output / "curves.png", dpi)
+    if any(branch.status == "interrupted" for branch in made):
+        return CANCELLED
+    return RUN_FAILED if any(branch.status == "no convergence" for branch in made) else 0
+
+
+def _numbers(text: str) -> list[float]:
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise InputError(f"--at-zeta-1 {text!r}: give numbers with commas, as in 560,600") from None
+
+
+def _followed(
+    cell: Parameters, to: float, turning: bool, output: Path, overwrite: bool
+) -> list[Branch]:
+    from cellcrawl.branches import from_circle
+
+    def file(kind: str) -> Path:
+        return output / f"{kind}-{cell.zeta_1:g}.nc"
+
+    start = from_circle(cell, "r_on", near=200.0)
+    gliding = start.continue_in("r_on", to, output=file(_GLIDING), overwrite=overwrite)
+    made = [gliding]
+    forks = gliding.points("pitchfork") if turning else []
+    for number, fork in enumerate(forks):
+        name = _TURNING if number == 0 else f"{_TURNING}-{number + 1}"
+        aim = max(1.0, 0.8 * fork.value)
+        try:
+            first = fork.branch_off()
+            made.append(first.continue_in("r_on", aim, output=file(name), overwrite=overwrite))
+        except InputError as error:
+            say(f"turning cells from {fork.value:.6g}: {error}")
+    return made
+
+
+def _tell(branch: Branch) -> None:
+    kind, cell = branch[0].kind, branch[0].parameters
+    say(f"{kind} cells, zeta_1 = {cell.zeta_1:g}: {len(branch)} states; {branch.message}")
+    for point in branch.special_points:
+        spin = f"  frequency {point.frequency:.6f}" if point.frequency else ""
+        what = f"{point.symmetry} {point.kind}".strip()
+        say(f"  r_on {point.value:12.7f}  {what}{spin}")
+
+
+def _write(points: list[SpecialPoint], path: Path) -> None:
+    try:
+        with path.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(_COLUMNS)
+            for point in points:
+                state, p = point.state, point.parameters
+                r_on = point.value if point.name == "r_on" else p.r_on
+                writer.writerow(
+                    [
+                        point.kind, point.symmetry, repr(r_on), repr(p.zeta_1),
+                        repr(point.frequency), repr(state.speed), repr(state.turning_rate),
+                        repr(state.tension),
+                    ]
+                )  # fmt: skip
+    except OSError as error:
+        raise cannot_write(path, error) from None
+    say(f"table    {path}")
+
+
+def _curves(points: list[SpecialPoint], cell: Parameters, to: float) -> list[PointCurve]:
+    """Follow the points of one zeta_1 over both parameters."""
+    from cellcrawl.branches import curve_of
+
+    first = points[0].parameters.zeta_1 if points else cell.zeta_1
+    box = {"r_on": (max(1.0, 0.5 * to), 70.0), "zeta_1": (400.0, 640.0)}
+    made = []
+    for point in points:
+        if point.parameters.zeta_1 != first or point.kind == "circle" or point.vector is None:
+            continue
+        curve = curve_of(point, "zeta_1", within=box, most_points=80)
+        say(f"{curve.symmetry} {curve.kind} over r_on and zeta_1: {len(curve)} points")
+        made.append(curve)
+    return made

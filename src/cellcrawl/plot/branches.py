@@ -1,0 +1,197 @@
+"""Branches of steady cells in one parameter, and the boundaries they draw over two."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Final
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from cellcrawl.arguments import checked
+from cellcrawl.branches import Branch, PointCurve
+from cellcrawl.branches.state import TURNING
+from cellcrawl.errors import InputError
+from cellcrawl.laws.law import PAPER
+from cellcrawl.linear import marginal_curves
+from cellcrawl.parameters import DESCRIPTIONS
+from cellcrawl.plot.mode_symbols import MODE_SYMBOLS
+from cellcrawl.plot.style import COLUMN, INK, axes_or_new
+from cellcrawl.plot.symbols import PARAMETER_NAMES, parameter_label
+from cellcrawl.validation import one_of
+
+_QUANTITIES: Final = {
+    "speed": "speed",
+    "turning_rate": "turning rate",
+    "tension": "tension",
+    "circularity": "circularity",
+    "length": "length",
+    "area": "area",
+    "largest_curvature": "sharpest bend",
+}
+_POINTS: Final = {
+    "fold": ("s", "fold"),
+    "Hopf": ("o", "Hopf point"),
+    "pitchfork": ("^", "pitchfork"),
+    "circle": ("D", "meets the circle"),
+    "branch point": ("v", "branch point"),
+}
+_GLIDING = MODE_SYMBOLS["gliding"].colour
+_TURNING = MODE_SYMBOLS["rotational"].colour
+_CURVES: Final = {
+    ("Hopf", "antisymmetric"): (MODE_SYMBOLS["zigzag"].colour, "-", "gliding begins to wobble"),
+    ("Hopf", "symmetric"): ("#7a7a7a", "--", "gliding begins to breathe"),
+    ("Hopf", ""): (_TURNING, ":", "steady turning begins to wobble"),
+    ("pitchfork", "antisymmetric"): (_TURNING, "-", "gliding begins to turn"),
+    ("fold", "symmetric"): (_GLIDING, "--", "gliding ends (fold)"),
+    ("fold", ""): (_TURNING, "--", "turning ends (fold)"),
+}
+
+
+@checked
+def branch(
+    branches: Branch | Sequence[Branch],
+    quantity: str = "speed",
+    *,
+    legend: bool = True,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw a measure of steady cells along branches: solid where stable, dotted where not.
+
+    Parameters
+    ----------
+    branches : Branch or sequence of Branch
+        Followed in the same parameter.
+    quantity : str
+        "speed", "turning_rate", "tension", "circularity", "length", "area" or "largest_curvature".
+    legend : bool
+        Say what the markers of special points are.
+    ax : Axes, optional
+        Where to draw; the only axes of a new figure unless given.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    InputError
+        For branches in different parameters, or another quantity.
+    """
+    many = [branches] if isinstance(branches, Branch) else list(branches)
+    if not many or len({one.name for one in many}) > 1:
+        raise InputError("give one branch or more, all followed in the same parameter")
+    quantity = one_of("quantity", quantity, _QUANTITIES)
+    seen: dict[str, Any] = {}
+    with axes_or_new(ax, COLUMN, 0.75 * COLUMN) as axes:
+        for one in many:
+            values = np.array([abs(getattr(state, quantity)) for state in one])
+            colour = _TURNING if one[0].kind == TURNING else _GLIDING
+            stable = np.array([one.spectra and state.stable for state in one])
+            for first, last, solid in _pieces(stable):
+                axes.plot(
+                    one.values[first : last + 1], values[first : last + 1],
+                    color=colour, linestyle="-" if solid else ":", linewidth=1.4 if solid else 1.0,
+                )  # fmt: skip
+            for point in one.special_points:
+                marker, label = _POINTS[point.kind]
+                height = abs(getattr(point.state, quantity))
+                seen[label] = axes.plot(
+                    point.value, height, marker=marker, color=INK, markersize=4.0,
+                    markerfacecolor="white", linestyle="none", zorder=3,
+                )[0]  # fmt: skip
+        axes.set_xlabel(_label(many[0].name))
+        axes.set_ylabel(_QUANTITIES[quantity])
+        if legend and seen:
+            axes.legend(list(seen.values()), list(seen), fontsize="small")
+    return axes
+
+
+@checked
+def boundaries(
+    curves: Sequence[PointCurve],
+    *,
+    onset: bool = True,
+    legend: bool = True,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw curves of special points over two parameters, in words of what happens there.
+
+    Parameters
+    ----------
+    curves : sequence of PointCurve
+        Over the same two parameters; the first is drawn to the right.
+    onset : bool
+        Draw too where the resting circle begins to glide, under the paper's laws.
+    legend : bool
+        Say what each is.
+    ax : Axes, optional
+        Such as that of `cellcrawl.plot.diagram`, whose symbols lie under the curves then.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    InputError
+        For curves over different parameters.
+    """
+    if not curves or len({curve.names for curve in curves}) > 1:
+        raise InputError("give one curve or more, all over the same two parameters")
+    seen: dict[str, Any] = {}
+    with axes_or_new(ax, COLUMN, COLUMN) as axes:
+        left, right = (axes.get_xlim(), axes.get_ylim()) if ax is not None else (None, None)
+        for curve in curves:
+            colour, style, label = _CURVES.get(
+                (curve.kind, curve.symmetry), (INK, "-", f"{curve.kind}")
+            )
+            values = curve.values
+            seen[label] = axes.plot(
+                values[:, 0], values[:, 1], color=colour, linestyle=style, linewidth=1.4, zorder=4
+            )[0]
+        box = axes.get_xlim(), axes.get_ylim()
+        setting = curves[0].points[0].state.setting
+        if onset and setting.laws == PAPER and set(curves[0].names) <= set(DESCRIPTIONS):
+            ranges = dict(zip(curves[0].names, box, strict=True))
+            for line in marginal_curves(setting.parameters, 1, **_within(ranges)):
+                label = "the round cell begins to glide"
+                seen[label] = axes.plot(*line.T, color=INK, linewidth=1.0, zorder=3)[0]
+            axes.set_xlim(box[0])
+            axes.set_ylim(box[1])
+        if left is not None and right is not None:
+            axes.set_xlim(left)
+            axes.set_ylim(right)
+        else:
+            axes.set_xlabel(_label(curves[0].names[0]))
+            axes.set_ylabel(_label(curves[0].names[1]))
+        if legend:
+            axes.figure.legend(
+                list(seen.values()), list(seen), loc="outside upper center", fontsize=7
+            ) if ax is None else axes.legend(list(seen.values()), list(seen), fontsize="small")
+    return axes
+
+
+def _within(ranges: dict[str, tuple[float, float]]) -> dict[str, tuple[float, float]]:
+    """Return ranges of parameters cut to what they may be."""
+    return {
+        name: (max(low, DESCRIPTIONS[name].low), min(high, DESCRIPTIONS[name].high))
+        for name, (low, high) in ranges.items()
+    }
+
+
+def _label(name: str) -> str:
+    """Return the label of a parameter; a law's own has its name."""
+    return parameter_label(name) if name in PARAMETER_NAMES else name
+
+
+def _pieces(stable: np.ndarray) -> list[tuple[int, int, bool]]:
+    """Return first and last state of each piece between two neighbours of one kind."""
+    made: list[tuple[int, int, bool]] = []
+    for k in range(stable.size - 1):
+        solid = bool(stable[k] and stable[k + 1])
+        if made and made[-1][2] == solid:
+            made[-1] = (made[-1][0], k + 1, solid)
+        else:
+            made.append((k, k + 1, solid))
+    return made
