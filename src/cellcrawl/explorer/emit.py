@@ -31,7 +31,8 @@ def text_of(entry: Entry) -> tuple[str, str]:
 def functions_of_the_c_library() -> list[Entry]:
     """Return `libm` as entry points."""
     number = types.float64
-    libm.log_ = register_jitable(**_OPTIONS)(libm.log)
+    for place, function in libm.CALLED.items():
+        setattr(libm, place, register_jitable(**_OPTIONS)(function))
     return [
         Entry(f"libm_{name}", function, number(*[number] * count))
         for name, (function, count) in libm.FUNCTIONS.items()

@@ -18,6 +18,8 @@ from cellcrawl.solvers.adaptive.frame import _edge_shape, _sample, _balance
 from cellcrawl.solvers.adaptive.projection import TRACE_ROWS
 from cellcrawl.solvers.adaptive.entries import TENSION
 
+from cellcrawl.explorer.starting import random_start
+from cellcrawl.curve.crossing import crossing_edges
 class Entry(NamedTuple):
     name: str
     function: Any
@@ -101,9 +103,25 @@ def frame(nodes, count, steps, control_, counters_, table_, y_, edge_, state_, t
     _balance(LAW, whole[1], edge, guess, out)
     return 0
 
+def start(modes, count, n_bar, amplitudes_, theta_, bound_, whole_):
+    amplitudes = carray(amplitudes_, (modes, 4))
+    theta = carray(theta_, (count,))
+    bound = carray(bound_, (count,))
+    whole = carray(whole_, (16,))
+    length, area = random_start(amplitudes, n_bar, theta, bound)
+    whole[0] = length
+    whole[1] = area
+    return 0
+
+def crossing(count, x_, y_):
+    i, j = crossing_edges(carray(x_, (count,)), carray(y_, (count,)))
+    return i
+
 def entries():
     i32, f = types.int32, types.float64
     return [
+        Entry("start", start, i32(i32, i32, f, F, F, F, F)),
+        Entry("crossing", crossing, i32(i32, F, F)),
         Entry("advance", advance, i32(i32, f, f, F, I, F, F, F, F, F, F)),
         Entry("frame", frame, i32(i32, i32, f, F, I, F, F, F, F, F, F, F, F)),
     ]

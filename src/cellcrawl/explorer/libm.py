@@ -11,24 +11,64 @@ from typing import Any, Final
 
 import numpy as np
 
-from cellcrawl.curve.sines import sine_and_cosine
 from cellcrawl.physics.exponential import exponential
 
 _LN2_HIGH: Final = 6.93147180369123816490e-01
 _LN2_LOW: Final = 1.90821492927058770002e-10
 _HALF: Final = math.sqrt(0.5)
 _MANTISSA: Final = (1 << 52) - 1
+_SHIFT: Final = 6755399441055744.0  # 1.5 * 2**52: adding it rounds to the nearest integer
+_PER_QUARTER: Final = 6.36619772367581382433e-01
+_QUARTER_1: Final = 1.57079632673412561417e00  # the first 33 bits of pi / 2 ...
+_QUARTER_1_TAIL: Final = 6.07710050650619224932e-11  # ... and the rest
 _SPLIT: Final = 134217729.0  # 2**27 + 1: a product with it halves a number's digits
 
 
+def _reduced(x: float) -> tuple[float, float, int]:
+    """Return x less a multiple of pi / 2, in two parts, and the multiple by its rest of 4."""
+    turns = (x * _PER_QUARTER + _SHIFT) - _SHIFT
+    r = x - turns * _QUARTER_1
+    w = turns * _QUARTER_1_TAIL
+    high = r - w
+    return high, (r - high) - w, int(turns) & 3
+
+
+def _sine(x: float, tail: float) -> float:
+    z = x * x
+    p = 1.58969099521155010221e-10
+    p = p * z - 2.50507602534068634195e-08
+    p = p * z + 2.75573137070700676789e-06
+    p = p * z - 1.98412698298579493134e-04
+    p = p * z + 8.33333333332248946124e-03
+    v = z * x
+    return x - ((z * (0.5 * tail - v * p) - tail) + v * 1.66666666666666324348e-01)
+
+
+def _cosine(x: float, tail: float) -> float:
+    z = x * x
+    p = -1.13596475577881948265e-11
+    p = p * z + 2.08757232129817482790e-09
+    p = p * z - 2.75573143513906633035e-07
+    p = p * z + 2.48015872894767294178e-05
+    p = p * z - 1.38888888888741095749e-03
+    p = p * z + 4.16666666666666019037e-02
+    half = 0.5 * z
+    w = 1.0 - half
+    return w + (((1.0 - w) - half) + (z * z * p - x * tail))
+
+
 def sin(x: float) -> float:
-    """Sine."""
-    return sine_and_cosine(x)[0]
+    """Sine of an angle of up to a million."""
+    high, tail, quarter = reduced_(x)
+    value = sine_(high, tail) if quarter % 2 == 0 else cosine_(high, tail)
+    return value if quarter < 2 else -value
 
 
 def cos(x: float) -> float:
-    """Cosine."""
-    return sine_and_cosine(x)[1]
+    """Cosine of an angle of up to a million."""
+    high, tail, quarter = reduced_(x)
+    value = cosine_(high, tail) if quarter % 2 == 0 else sine_(high, tail)
+    return value if quarter in (0, 3) else -value
 
 
 def exp(x: float) -> float:
@@ -83,17 +123,29 @@ def tanh(x: float) -> float:
     a = abs(x)
     if a > 22.0:
         return math.copysign(1.0, x)
-    if a < 0.3:
-        z = x * x
-        p = -929569.0 / 638512875.0 * z + 21844.0 / 6081075.0
-        p = p * z - 1382.0 / 155925.0
-        p = p * z + 62.0 / 2835.0
-        p = p * z - 17.0 / 315.0
-        p = p * z + 2.0 / 15.0
-        p = p * z - 1.0 / 3.0
-        return x + x * z * p
-    grown = exponential(2.0 * a)
-    return math.copysign(1.0 - 2.0 / (grown + 1.0), x)
+    if a < 0.4:
+        z = 2.0 * a
+        p = 0.0
+        for k in range(22, 1, -1):
+            p = (p + 1.0) * z / k
+        grown = z + z * p
+        return math.copysign(grown / (grown + 2.0), x)
+    return math.copysign(1.0 - 2.0 / (exponential(2.0 * a) + 1.0), x)
+
+
+def atan(x: float) -> float:
+    """Arc tangent."""
+    a = abs(x)
+    turned = a > 1.0
+    a = 1.0 / a if turned else a
+    half = a / (1.0 + math.sqrt(1.0 + a * a))  # tangents of a half and a quarter of the angle
+    quarter = half / (1.0 + math.sqrt(1.0 + half * half))
+    z = quarter * quarter
+    p = 0.0
+    for k in range(27, 1, -2):
+        p = 1.0 / k - z * p
+    value = 4.0 * (quarter - quarter * z * p)
+    return math.copysign(0.5 * math.pi - value if turned else value, x)
 
 
 def pow(x: float, y: float) -> float:
@@ -130,7 +182,12 @@ def hypot(x: float, y: float) -> float:
 
 
 
-log_: Any = log  # compiled by the builder, which other functions here call
+# what the functions above call, compiled by the builder
+log_: Any = log
+reduced_: Any = _reduced
+sine_: Any = _sine
+cosine_: Any = _cosine
+CALLED: Final = {"log_": log, "reduced_": _reduced, "sine_": _sine, "cosine_": _cosine}
 FUNCTIONS: Final[dict[str, tuple[Any, int]]] = {
     "sin": (sin, 1),
     "cos": (cos, 1),
@@ -138,6 +195,7 @@ FUNCTIONS: Final[dict[str, tuple[Any, int]]] = {
     "log": (log, 1),
     "log1p": (log1p, 1),
     "tanh": (tanh, 1),
+    "atan": (atan, 1),
     "pow": (pow, 2),
     "hypot": (hypot, 2),
 }
