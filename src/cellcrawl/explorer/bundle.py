@@ -15,7 +15,6 @@ from typing import Any, Final
 _IMPORT: Final = re.compile(r'^import \{([^}]*)\} from "\./(\w+)\.js";\n', re.M)
 _EXPORT: Final = re.compile(r"^export ((?:async )?(?:function|class|const|let) (\w+))", re.M)
 _LIST: Final = re.compile(r"^export \{([^}]*)\};\n", re.M)
-_FIRST: Final = "main"
 
 
 def page(module: bytes, content: dict[str, Any]) -> str:
@@ -29,10 +28,10 @@ def page(module: bytes, content: dict[str, Any]) -> str:
     return text
 
 
-def script() -> str:
-    """Return all JavaScript as one module."""
+def script(first: str = "main") -> str:
+    """Return a module of the page with all that it imports as one; ``$name`` is each by name."""
     order: list[str] = []
-    _visit(_FIRST, order, ())
+    _visit(first, order, ())
     return "\n".join(_wrapped(name) for name in order)
 
 

@@ -11,6 +11,8 @@ import numpy as np
 from matplotlib.colors import to_hex
 
 from cellcrawl.explorer.presets import CARDS, PRESETS
+from cellcrawl.modes.confidence import FILE
+from cellcrawl.modes.evidence import WORDS, Evidence
 from cellcrawl.linear import growth_rates, marginal_curves
 from cellcrawl.parameters import DESCRIPTIONS, Parameters, Scales
 from cellcrawl.plot.scales import SCALES
@@ -33,6 +35,8 @@ def content() -> dict[str, Any]:
         "meanings": {name: about.meaning for name, about in DESCRIPTIONS.items()},
         "map": {**_shading(), "modes": diagram()},
         "presets": [preset.as_content() for preset in PRESETS],
+        "evidence": {"names": list(Evidence._fields), "words": WORDS},
+        "confidence": _confidence(),
         "cards": [card._asdict() for card in CARDS],
     }
 
@@ -42,6 +46,12 @@ def diagram() -> list[list[Any]]:
     text = resources.files("cellcrawl.explorer").joinpath(DIAGRAM).read_text("utf-8")
     rows: list[list[Any]] = json.loads(text)["modes"]
     return rows
+
+
+def _confidence() -> dict[str, Any]:
+    text = resources.files("cellcrawl.modes").joinpath(FILE).read_text("utf-8")
+    kept: dict[str, Any] = json.loads(text)
+    return {name: kept[name] for name in ("answers", "lengths", "raw", "settled")}
 
 
 def _colours(name: str) -> str:

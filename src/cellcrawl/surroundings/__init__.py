@@ -16,6 +16,7 @@ from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.laws.law import described
 from cellcrawl.surroundings.base import Place, Surrounding, Surroundings
+from cellcrawl.surroundings.discs import Islands, LocalPulse, Pillars
 from cellcrawl.surroundings.fields import ElectricField, Gradient, UniformForce
 from cellcrawl.surroundings.patterns import Island, Pattern, Stripes
 from cellcrawl.surroundings.walls import Channel, Walls
@@ -30,6 +31,9 @@ SHIPPED: Final[dict[str, type[Any]]] = {
     "electric-field": ElectricField,
     "channel": Channel,
     "walls": Walls,
+    "islands": Islands,
+    "pillars": Pillars,
+    "pulse": LocalPulse,
 }
 """Surroundings by the names that tables of TOML files take."""
 
@@ -39,7 +43,10 @@ __all__ = [
     "ElectricField",
     "Gradient",
     "Island",
+    "Islands",
+    "LocalPulse",
     "Pattern",
+    "Pillars",
     "Place",
     "Stripes",
     "Surrounding",

@@ -13,10 +13,14 @@ from cellcrawl.errors import InputError
 from cellcrawl.laws.expressions import Expression, body, call, number, symbol
 from cellcrawl.laws.functions import Compiled, register
 from cellcrawl.laws.law import Described, Law
-from cellcrawl.surroundings.lookup import image_value, polygon_depth
+from cellcrawl.surroundings.lookup import disc_depth, image_value, polygon_depth
 from cellcrawl.validation import shown
 
-_LOOKUPS: Final = {"image_value": image_value, "polygon_depth": polygon_depth}
+_LOOKUPS: Final = {
+    "disc_depth": disc_depth,
+    "image_value": image_value,
+    "polygon_depth": polygon_depth,
+}
 _AT: Final = ("x", "y", "time", "normal_x", "normal_y")
 
 

@@ -63,3 +63,21 @@ def polygon_depth(data: np.ndarray, table: float, x: float, y: float) -> float:
         if (ay > y) != (by > y) and x < ax + (y - ay) / (by - ay) * dx:
             inside = not inside
     return math.sqrt(least) if inside else -math.sqrt(least)
+
+
+@kernel
+def disc_depth(data: np.ndarray, table: float, x: float, y: float) -> float:
+    """How deep a place is inside the nearest of some discs: distance to its rim, below 0 outside.
+
+    The table holds the number of discs, and x, y and radius of each in turn.
+    """
+    k = int(table)
+    depth = -math.inf
+    for disc in range(int(data[k])):
+        dx, dy = x - data[k + 1 + 3 * disc], y - data[k + 2 + 3 * disc]
+        radius = data[k + 3 + 3 * disc]
+        reach = radius - depth
+        square = dx * dx + dy * dy
+        if square < reach * reach:
+            depth = radius - math.sqrt(square)
+    return depth

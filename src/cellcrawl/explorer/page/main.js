@@ -279,7 +279,7 @@ class Page {
       $("shelf").append(button);
       requestAnimationFrame(() => thumbnail(button.querySelector("canvas"), preset));
     }
-    $("legend").innerHTML = ["gliding", "rotational", "zigzag", "other", "stationary", "fragmented"].filter((mode) => DATA.map.modes.some((row) => row[2] === mode)).map((mode) => `<span><svg viewBox="-12 -12 24 24" aria-hidden="true">${symbol(mode)}</svg>${WORDS[mode]}</span>`).join("") + "<span>yellow: how fast the round cell breaks its symmetry</span>";
+    $("legend").innerHTML = ["gliding", "rotational", "zigzag", "other", "stationary", "fragmented"].filter((mode) => DATA.map.modes.some((row) => row[2] === mode)).map((mode) => `<span><svg viewBox="-12 -12 24 24" aria-hidden="true">${symbol(mode)}</svg>${WORDS[mode]}</span>`).join("") + "<span>shade: how fast the round cell breaks its symmetry; left and right of the dashed lines it does not</span>";
   }
 
   cards() {

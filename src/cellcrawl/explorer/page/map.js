@@ -6,7 +6,7 @@ import { fit } from "./stage.js";
 
 const M = DATA.map;
 export const RANGE = { r_on: M.r_on, zeta_1: M.zeta_1 };
-const EDGES = { left: 44, right: 10, top: 10, bottom: 34 };
+const EDGES = { left: 58, right: 12, top: 10, bottom: 34 };
 
 export class PhaseMap {
   constructor(canvas, onMove) {
@@ -131,7 +131,7 @@ export class PhaseMap {
       context.fillText(String(z), x - 7, Y(z) + 4);
     }
     context.save();
-    context.translate(11, y + h / 2);
+    context.translate(13, y + h / 2);
     context.rotate(-Math.PI / 2);
     context.textAlign = "center";
     context.fillText("adhesive friction ζ₁", 0, 0);
