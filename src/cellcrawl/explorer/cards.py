@@ -89,14 +89,14 @@ def _the_poke_turns_it() -> bool:
 def _too_sticky_to_move() -> bool:
     run = _run(_STUCK, 60.0)
     theory = cellcrawl.linear.growth_rates(read(_STUCK).parameters, 1)[0].real
-    return bool(theory < 0.0) and cellcrawl.classify(run).mode == "stationary"
+    return bool(theory <= 0.0) and cellcrawl.classify(run).mode == "stationary"
 
 
 _GLIDES: Final = "v=1&r_on=16&zeta_1=600&seed=2"
 _ZIGZAGS: Final = "v=1&r_on=26&zeta_1=600&seed=2"
 _TURNED_UP: Final = f"{_GLIDES}&changes={CHANGES_AT:g},r_on:26"
 _POKED: Final = "v=1&r_on=16&zeta_1=600&seed=2&pokes=release,30.5,0,0"
-_STUCK: Final = "v=1&r_on=26&zeta_1=300&seed=2"
+_STUCK: Final = "v=1&r_on=26&zeta_1=400&seed=2"
 
 CARDS: Final = (
     Card(
@@ -130,7 +130,7 @@ CARDS: Final = (
     ),
     Card(
         "Too little grip",
-        "Let the cell sit at an adhesive friction of 300. Then raise it slowly.",
+        "Let the cell sit at an adhesive friction of 400. Then raise it slowly.",
         "It stays round: below the dashed line every disturbance of the circle dies out. Somewhere "
         "above, it breaks free.",
         _STUCK,

@@ -10,7 +10,8 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.colors import to_hex
 
-from cellcrawl.explorer.presets import CARDS, PRESETS
+from cellcrawl.explorer.cards import CARDS
+from cellcrawl.explorer.presets import PRESETS
 from cellcrawl.modes.confidence import FILE
 from cellcrawl.modes.evidence import WORDS, Evidence
 from cellcrawl.linear import growth_rates, marginal_curves
@@ -28,24 +29,29 @@ _STOPS: Final = 33
 def content() -> dict[str, Any]:
     """Return all of it as plain values for JSON."""
     scales = Scales()
+    kept = kept_runs()
+    pictures = kept["pictures"]
     return {
         "colours": {SCALES[f].colormap: _colours(SCALES[f].colormap) for f in _FIELDS},
         "scales": {name: getattr(scales, name) for name in scales.field_names()},
         "limits": {name: [about.low, about.high] for name, about in DESCRIPTIONS.items()},
         "meanings": {name: about.meaning for name, about in DESCRIPTIONS.items()},
-        "map": {**_shading(), "modes": diagram()},
-        "presets": [preset.as_content() for preset in PRESETS],
+        "map": {**_shading(), "modes": kept["modes"]},
+        "presets": [{**preset.as_content(), "picture": pictures[preset.key]} for preset in PRESETS],
         "evidence": {"names": list(Evidence._fields), "words": WORDS},
         "confidence": _confidence(),
-        "cards": [card._asdict() for card in CARDS],
+        "cards": [
+            {name: value for name, value in card._asdict().items() if name != "check"}
+            for card in CARDS
+        ],
     }
 
 
-def diagram() -> list[list[Any]]:
-    """Return r_on, zeta_1 and the mode of the package's own runs, one row a point."""
+def kept_runs() -> dict[str, Any]:
+    """Return what `diagram` made: modes over the map and the presets' pictures."""
     text = resources.files("cellcrawl.explorer").joinpath(DIAGRAM).read_text("utf-8")
-    rows: list[list[Any]] = json.loads(text)["modes"]
-    return rows
+    kept: dict[str, Any] = json.loads(text)
+    return kept
 
 
 def _confidence() -> dict[str, Any]:

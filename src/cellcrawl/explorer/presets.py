@@ -134,9 +134,9 @@ OTHERS: Final = (
     Preset(
         "island",
         "On an island",
-        "Linkers bind half as often off the island.",
+        "Linkers bind half as often off the island: it circles there.",
         _link(26, 600, "islands=0,0,3", "camera=whole"),
-        "other",
+        "rotational",
         100.0,
     ),
     Preset(

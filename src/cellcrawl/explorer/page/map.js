@@ -62,7 +62,7 @@ export class PhaseMap {
       const rate = M.growth[k];
       const part = Math.max(-1, Math.min(1, rate / M.largest));
       // grey where the round cell is stable, warmer the faster it breaks its symmetry
-      const colour = part < 0 ? [226, 226, 224] : [253 - 14 * part, 249 - 60 * part, 240 - 126 * part];
+      const colour = part <= 0.002 ? [226, 226, 224] : [253 - 14 * part, 249 - 60 * part, 240 - 126 * part];
       colour.forEach((value, c) => (image.data[at + c] = value));
       image.data[at + 3] = 255;
     }
