@@ -10,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from cellcrawl.bench.cases import LAWS, check_start
+from cellcrawl.curve import fourier
 from cellcrawl.parameters import Parameters
 from cellcrawl.solvers.adaptive import AdaptiveSolver
 from cellcrawl.solvers.adaptive import state as layout
@@ -51,8 +52,9 @@ def adaptive_order_in_space(parameters: Parameters, nodes: tuple[int, int] = (96
     errors = []
     for count in nodes:
         found = _rates(parameters, count)
-        true = layout.regridded(exact[None], count)[0]
-        errors.append(float(np.abs(layout.bound(found) - layout.bound(true)).max()))
+        ahead = math.pi / count - math.pi / _FINEST
+        true = fourier.resample(layout.bound(exact), count, ahead)
+        errors.append(float(np.abs(layout.bound(found) - true).max()))
     return math.log(errors[0] / errors[1]) / math.log(nodes[1] / nodes[0])
 
 

@@ -6,6 +6,7 @@ a run may be stopped and resumed anywhere to the same bits.
 
 from __future__ import annotations
 
+import math
 from typing import Any, Final
 
 import numpy as np
@@ -21,7 +22,16 @@ from cellcrawl.solvers.adaptive.differences import (
     predict,
     rescale,
 )
-from cellcrawl.solvers.adaptive.mesh import aim, edge_on_mesh, hold, lay_out, normalise, relax
+from cellcrawl.solvers.adaptive.mesh import (
+    aim,
+    edge_on_mesh,
+    fill_uniform,
+    hold,
+    lay_out,
+    normalise,
+    read_profile,
+    relax,
+)
 from cellcrawl.solvers.adaptive.newton import factor, solve
 from cellcrawl.solvers.adaptive.projection import project
 from cellcrawl.solvers.adaptive.rates import rates, renew_rates
@@ -36,7 +46,7 @@ from cellcrawl.solvers.adaptive.staggered import HALO, fill_halo
 from cellcrawl.solvers.adaptive.step_error import relative_size
 
 TABLE_ROWS: Final = DIFFERENCES + ROOM
-_ITERATE, _CORRECTION, _RESIDUAL, _HISTORY = range(DIFFERENCES, DIFFERENCES + 4)
+_ITERATE, _CORRECTION, RESIDUAL, _HISTORY = range(DIFFERENCES, DIFFERENCES + 4)
 # entries of `control`
 (
     TIME,
@@ -72,6 +82,8 @@ KEEP, FINER, COARSER, FEWEST = range(4)
 # what `solve_step` returns
 SOLVED, NOT_CONVERGED, ROOTLESS = range(3)
 
+_FIRST_STEP = 0.2  # times the root of the tolerance, relative to the rate of change
+_SHORT = 1e-3  # a step at which the density of the nodes relaxes at its full rate
 LONGEST_STEP: Final = 0.1  # an instability grows at rates up to 13; longer steps would hide it
 SHORTEST_STEP: Final = 1e-10
 _SAFETY = 0.85
@@ -90,6 +102,50 @@ _REMEMBERED = 3.0  # time over which what a grid misses is averaged
 _PEAK_SHARE = 0.1  # of what a grid misses for a moment
 _FORGET = 0.99  # of the most missed lately, at each look: a change of nodes costs 100 steps
 _LEAST_CONTRAST = 1e-7  # waves smaller than this are no longer followed to their own size
+
+
+@kernel
+def restart(
+    laws: Any,
+    around: Any,
+    tolerance: float,
+    control: np.ndarray,
+    counters: np.ndarray,
+    table: np.ndarray,
+    y: np.ndarray,
+    profile: np.ndarray,
+    edge: np.ndarray,
+    mesh: np.ndarray,
+    work: np.ndarray,
+) -> bool:
+    """Take the rates under the parameters that hold now, and begin with a short step.
+
+    False where they have no root.
+    """
+    nodes = y.size
+    span = nodes + 2 * HALO
+    state, rate = table[0], table[1]
+    w, n, g = state[:span], state[span : 2 * span], state[2 * span : 3 * span]
+    read_profile(profile, g, edge, mesh, work)
+    lay_out(w, n, g, _SHORT, 1, mesh, nodes)
+    renew_rates(laws, y, edge, work)
+    for row in range(1, table.shape[0]):
+        for k in range(table.shape[1]):
+            table[row, k] = 0.0
+    counters[RATES] += 1
+    if not rates(laws, around, control[TIME], state, rate, y, edge, mesh, work):
+        return False
+    _, control[CONTRAST] = missed(state, nodes, work)
+    control[FORMATION] = formation(n, nodes)
+    pace = relative_size(rate, state, nodes, 1.0)
+    control[STEP] = _FIRST_STEP * math.sqrt(tolerance) / (1.0 + pace)
+    for k in range(rate.size):
+        rate[k] *= control[STEP]
+    control[CONTRACTION] = UNKNOWN_CONTRACTION
+    control[FACTORED] = 0.0
+    counters[ORDER] = 1
+    counters[EQUAL_STEPS] = counters[RESTARTING] = 0
+    return True
 
 
 @woven_kernel
@@ -137,7 +193,7 @@ def solve_step(
     c = control[STEP] / LEADING[order]
     time = control[TIME] + control[STEP]
     now, correction = table[_ITERATE], table[_CORRECTION]
-    residual, history = table[_RESIDUAL], table[_HISTORY]
+    residual, history = table[RESIDUAL], table[_HISTORY]
     predict(order, table, now, history)
     for k in range(now.size):
         correction[k] = 0.0
@@ -185,41 +241,6 @@ def solve_step(
     return NOT_CONVERGED
 
 
-def bend_history(
-    laws: Any,
-    around: Any,
-    control: np.ndarray,
-    counters: np.ndarray,
-    table: np.ndarray,
-    y: np.ndarray,
-    edge: np.ndarray,
-    mesh: np.ndarray,
-    matrix: np.ndarray,
-    work: np.ndarray,
-) -> None:
-    """Make the past lead to the present with the rates of a new grid.
-
-    The grids' rates differ by what they miss. Without this the past has a kink there, which costs
-    many short steps; stiff parts of the difference are damped as a step would.
-    """
-    order, h = counters[ORDER], control[STEP]
-    state, residual = table[0], table[_RESIDUAL]
-    nodes = y.size
-    span = nodes + 2 * HALO
-    fields = state[:span], state[span : 2 * span], state[2 * span : 3 * span]
-    lay_out(*fields, h, order, mesh, nodes)
-    renew_rates(laws, y, edge, work)
-    if not rates(laws, around, control[TIME], state, residual, y, edge, mesh, work):
-        return
-    residual *= h
-    for j in range(1, order + 1):
-        residual -= table[j] / j
-    c = h / LEADING[order]
-    factor(laws, around, c, state, y, edge, mesh, work, matrix)
-    solve(c, state, mesh, matrix, residual)
-    table[1] += residual
-
-
 @woven_kernel
 def choose_step(
     error: float,
@@ -261,7 +282,8 @@ def run(
     tolerance: float,
     most_steps: int,
     allowed: float,
-    nodes_range: tuple[int, int],
+    fewest_nodes: int,
+    most_nodes: int,
     control: np.ndarray,
     counters: np.ndarray,
     table: np.ndarray,
@@ -276,11 +298,13 @@ def run(
     """Step until ``target`` is reached or something is for the caller to do.
 
     ``allowed`` is what the grid may miss (see `resolution`) while the nodes stay in their range.
-    ``edge`` holds the law's parameters and G at the midpoints, shape (rows, nodes), at the end of
-    the next step; while they are ``ramping``, only one step is tried (`RETRY`).
+    ``profile`` holds the law's parameters and G at equal arclengths, shape (rows, places), at the
+    end of the next step, with one place where they are the same all along the edge; while they are
+    ``ramping``, only one step is tried (`RETRY`). ``edge`` is filled with them at the midpoints.
     """
     tried = 0
     nodes = y.size
+    fill_uniform(profile, edge)
     while control[TIME] < target:
         if tried == most_steps:
             return PAUSED
@@ -325,7 +349,7 @@ def run(
             if error < 1e10:
                 shrink = error ** (-1.0 / (order + 1))
                 if order > 1:
-                    lower = table[_RESIDUAL]
+                    lower = table[RESIDUAL]
                     for k in range(lower.size):
                         lower[k] = table[order, k] + correction[k]
                     size = relative_size(lower, table[_ITERATE], nodes, contrast)
@@ -364,11 +388,11 @@ def run(
             misses = max(control[MISSED], _PEAK_SHARE * misses)
             control[PEAK] = max(control[PEAK] * _FORGET, misses) if formed else misses
             most = allowance(allowed, control[CONTRAST], formed)
-            if misses > most and nodes < nodes_range[1]:
+            if misses > most and nodes < most_nodes:
                 counters[CHECK_DUE] = FINER
             elif misses > HOPELESS * most:
                 return UNRESOLVED
-            elif counters[STEPS] % _COARSEN_EVERY == 0 and nodes > nodes_range[0]:
+            elif counters[STEPS] % _COARSEN_EVERY == 0 and nodes > fewest_nodes:
                 if not formed and COARSER_MISSES * misses < COARSEN * most:
                     counters[CHECK_DUE] = FEWEST
                 elif COARSER_MISSES * control[PEAK] < COARSEN * most:

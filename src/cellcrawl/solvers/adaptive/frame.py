@@ -11,7 +11,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from cellcrawl._compile import inlined_kernel, kernel
+from cellcrawl._compile import kernel
 from cellcrawl.curve.fourier import BEFORE, TAPS
 from cellcrawl.laws.functions import friction, off_rate, velocity
 from cellcrawl.physics.force_balance import SOLVED, bond_force, solve_bonds
@@ -31,15 +31,24 @@ from cellcrawl.solvers.adaptive.projection import (
 )
 from cellcrawl.solvers.adaptive.staggered import HALO, difference_ahead, fill_halo, mean_ahead
 from cellcrawl.solvers.base import Frame, Instant
-from cellcrawl.surroundings.place import placed
+from cellcrawl.surroundings.place import surround_edge
 
 KAPPA, PLACE = COSINE, SINE  # rows that hold these once the tangent has been used
 _HALO = np.uint64(HALO)
-_ROWS: Final = ("x", "y", "theta", "curvature", "bound_fraction", "off_rate")
+_ROWS: Final = (
+    "x",
+    "y",
+    "theta",
+    "curvature",
+    "bound_fraction",
+    "off_rate",
+    "normal_velocity",
+    "friction",
+)
 _VELOCITY, _FRICTION = 6, 7
 _CLEARLY = 0.1  # in cell radii: far more than the edge does between two midpoints
-_NEWTON_STEPS = 5
-_SETTLED = 2e-5  # a Newton step this short leaves a tenth of its square
+_GUESSES = 4
+_BLOCK = 32  # places that are found at once
 _SCALES: Final = np.array(
     [
         (-1.0) ** (TAPS - 1 - tap) / (math.factorial(tap) * math.factorial(TAPS - 1 - tap))
@@ -55,74 +64,51 @@ class Shape(NamedTuple):
     work: np.ndarray
     """x and y from node 0, and arclength in mean spacings, at the nodes; curvature at the
     midpoints; all with halos, in rows `X`, `Y`, `PLACE` and `KAPPA`."""
-    area: float
-    centroid: tuple[float, float]
-    closure_error: float
-    area_error: float
-    """What was mended: relative to the length and the area."""
-    star_shaped: bool
-    """Whether every point of the edge is seen from the centroid; then it cannot cross itself."""
+    instant: Instant
+    mended: tuple[float, float]
+    """Errors of closure and area, relative to the length and the area."""
 
 
-def shape_of(state: np.ndarray) -> Shape:
-    """Return the edge of a state."""
-    return shape_between(0.0, 0, state[None])
-
-
-def shape_between(steps: float, order: int, table: np.ndarray) -> Shape:
-    """Return the edge ``steps`` step sizes after the last state, between -1 and 0.
+def shape_between(time: float, steps: float, order: int, table: np.ndarray) -> Shape:
+    """Return the edge at ``time``, ``steps`` step sizes after the last state, between -1 and 0.
 
     ``table`` holds the state and its backward differences. The edge closes and has the area of the
     tension law to rounding.
     """
-    state = np.empty_like(table[0])
+    state = np.empty(table.shape[1])
     work = np.empty((TRACE_ROWS, layout.nodes_of(state) + 2 * HALO))
-    area, x, y, gap, excess, clearance = _edge_shape(steps, order, table, state, work)
-    return Shape(state, work, area, (x, y), gap, excess, clearance > _CLEARLY)
-
-
-def instant(time: float, shape: Shape) -> Instant:
-    """Return the cell as a whole."""
-    return Instant(time=time, **_whole_cell(shape))
+    area, x, y, gap, excess, clearance = edge_shape(steps, order, table, state, work)
+    scalars = layout.scalars(state).tolist()
+    whole = Instant(
+        time=time,
+        tension=scalars[TENSION],
+        length=scalars[LENGTH],
+        area=area,
+        centroid_x=x + scalars[ORIGIN_X],
+        centroid_y=y + scalars[ORIGIN_Y],
+        surely_simple=clearance > _CLEARLY,
+        closure_gap=max(gap, excess),
+    )
+    return Shape(state, work, whole, (gap, excess))
 
 
 def frame(
-    laws: Any, around: Any, time: float, shape: Shape, log_rate: np.ndarray, edge: np.ndarray
+    laws: Any, around: Any, shape: Shape, log_rate: np.ndarray, profile: np.ndarray, nodes: int
 ) -> Frame:
-    """Return the cell on ``edge.shape[1]`` nodes.
+    """Return the cell on ``nodes`` nodes.
 
-    ``log_rate`` is any guess of ``log r`` at the solver's midpoints.
+    ``log_rate`` is any guess of ``log r`` at the solver's midpoints; ``profile`` holds the local
+    parameters at the nodes, or at one place if they are the same all along the edge.
     """
-    out = np.empty((_FRICTION + 1, edge.shape[1]))
-    y = np.empty(edge.shape[1])
-    _sample(shape.state, shape.work, log_rate, y, out)
-    edge = placed(around, time, out[0], out[1], (np.cos(out[2]), np.sin(out[2])), edge)
-    _balance(laws, float(layout.scalars(shape.state)[TENSION]), edge, y, out)
-    return Frame(
-        time=time,
-        **{name: out[row] for row, name in enumerate(_ROWS)},
-        normal_velocity=out[_VELOCITY],
-        friction=out[_FRICTION],
-        **_whole_cell(shape),
-    )
-
-
-def _whole_cell(shape: Shape) -> dict[str, Any]:
-    scalars = layout.scalars(shape.state)
-    center_x, center_y = shape.centroid
-    return {
-        "tension": float(scalars[TENSION]),
-        "length": float(scalars[LENGTH]),
-        "area": shape.area,
-        "centroid_x": center_x + float(scalars[ORIGIN_X]),
-        "centroid_y": center_y + float(scalars[ORIGIN_Y]),
-        "surely_simple": shape.star_shaped,
-        "closure_gap": max(shape.closure_error, shape.area_error),
-    }
+    out, edge = np.empty((len(_ROWS), nodes)), np.empty((len(profile) + 1, nodes))
+    whole = shape.instant
+    fill_frame(laws, around, whole.time, shape.state, shape.work, log_rate, profile, edge, out)
+    fields: dict[str, Any] = dict(zip(_ROWS, out, strict=True))
+    return Frame(**vars(whole), **fields)
 
 
 @kernel
-def _edge_shape(
+def edge_shape(
     steps: float, order: int, table: np.ndarray, state: np.ndarray, work: np.ndarray
 ) -> tuple[float, float, float, float, float, float]:
     """Area, centroid from node 0, what was amiss with closure and area, least support.
@@ -156,6 +142,40 @@ def _edge_shape(
 
 
 @kernel
+def fill_frame(
+    laws: Any,
+    around: Any,
+    time: float,
+    state: np.ndarray,
+    work: np.ndarray,
+    log_rate: np.ndarray,
+    profile: np.ndarray,
+    edge: np.ndarray,
+    out: np.ndarray,
+) -> None:
+    """Fill the rows of ``out`` at equal arclengths.
+
+    ``profile`` holds the parameters far from all surroundings, at one place if they are the same
+    all along the edge; ``edge`` has room for them at every node, and a row more.
+    """
+    nodes, rows = out.shape[1], profile.shape[0]
+    y = edge[rows]
+    _sample(state, work, log_rate, y, out)
+    for row in range(rows):
+        for i in range(nodes):
+            edge[row, i] = profile[row, 0 if profile.shape[1] == 1 else i]
+    sigma = state[state.size - SCALARS + TENSION]
+    if around is not None:
+        for i in range(nodes):
+            out[_VELOCITY, i] = math.cos(out[2, i])
+            out[_FRICTION, i] = math.sin(out[2, i])
+        surround_edge(around, time, out[0], out[1], out[_VELOCITY], out[_FRICTION], edge[:rows])
+        _balance(laws, sigma, around.local, y, out)
+    else:
+        _balance(laws, sigma, edge, y, out)
+
+
+@kernel
 def _sample(
     state: np.ndarray, work: np.ndarray, log_rate: np.ndarray, y: np.ndarray, out: np.ndarray
 ) -> None:
@@ -164,25 +184,54 @@ def _sample(
     span = count + 2 * HALO
     w, n, g = state[:span], state[span : 2 * span], state[2 * span : 3 * span]
     scalars = state[3 * span :]
-    place, turn = work[PLACE], 2.0 * math.pi / count
-    weights = np.empty(TAPS)
-    before = 0  # the node at or before the place
-    for i in range(nodes):
-        wanted = i * (count / nodes)
-        while before < count - 1 and place[HALO + before + 1] <= wanted:
-            before += 1
-        part = _part_of_cell(wanted, before, place, g, weights)
-        _lagrange(part, weights)
-        first = HALO + before - BEFORE
-        out[0, i] = _weighted(work[X], first, weights) + scalars[ORIGIN_X]
-        out[1, i] = _weighted(work[Y], first, weights) + scalars[ORIGIN_Y]
-        out[2, i] = _weighted(w, first, weights) + turn * (before + part)
-        early = part < 0.5
-        _lagrange(part + (0.5 if early else -0.5), weights)
-        first -= 1 if early else 0
-        out[3, i] = _weighted(work[KAPPA], first, weights)
-        out[4, i] = _weighted(n, first, weights)
-        y[i] = log_rate[before]
+    place, turn, apart = work[PLACE], 2.0 * math.pi / count, count / nodes
+    weights = np.empty((TAPS + 1, _BLOCK))
+    part, half, linear = np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
+    growth, change = np.empty(_BLOCK), np.empty(_BLOCK)
+    here, slope = np.empty(_BLOCK), np.empty(_BLOCK)
+    first, middle = np.empty(_BLOCK, np.uint64), np.empty(_BLOCK, np.uint64)
+    before = HALO  # the node at or before the place
+    for start in range(0, nodes, _BLOCK):
+        size = min(_BLOCK, nodes - start)
+        for b in range(size):
+            wanted = (start + b) * apart
+            while before < HALO + count - 1 and place[before + 1] <= wanted:
+                before += 1
+            back = place[before] - place[before - 1]
+            spacing = place[before + 1] - place[before]
+            ahead = place[before + 2] - place[before + 1]
+            part[b] = linear[b] = (wanted - place[before]) / spacing
+            growth[b] = 0.5 * (ahead - back) / spacing
+            change[b] = (ahead - 2.0 * spacing + back) / (3.0 * spacing)
+            first[b] = before - BEFORE
+            out[2, start + b] = turn * (before - HALO)
+            y[start + b] = log_rate[before - HALO]
+        for _ in range(_GUESSES):  # on the cubic through the four nodes around
+            for b in range(size):
+                bend = growth[b] + (part[b] - 0.5) * change[b]
+                part[b] = linear[b] + 0.5 * part[b] * (1.0 - part[b]) * bend
+        _lagrange(part, weights, size)
+        _weighted(place, first, weights, size, here)
+        _to_midpoints(part, first, half, middle, size)
+        _lagrange(half, weights, size)
+        _weighted(g, middle, weights, size, slope)
+        for b in range(size):
+            step = ((start + b) * apart - here[b]) / slope[b]
+            part[b] += step - 0.5 * growth[b] * step * step
+        for b in range(size):
+            part[b] = min(max(part[b], 0.0), 1.0)
+        _lagrange(part, weights, size)
+        _weighted(work[X], first, weights, size, out[0, start:])
+        _weighted(work[Y], first, weights, size, out[1, start:])
+        _weighted(w, first, weights, size, here)
+        for b in range(size):
+            out[0, start + b] += scalars[ORIGIN_X]
+            out[1, start + b] += scalars[ORIGIN_Y]
+            out[2, start + b] += here[b] + turn * part[b]
+        _to_midpoints(part, first, half, middle, size)
+        _lagrange(half, weights, size)
+        _weighted(work[KAPPA], middle, weights, size, out[3, start:])
+        _weighted(n, middle, weights, size, out[4, start:])
 
 
 @kernel
@@ -202,44 +251,41 @@ def _balance(laws: Any, sigma: float, edge: np.ndarray, y: np.ndarray, out: np.n
 
 
 @kernel
-def _part_of_cell(
-    wanted: float, before: int, place: np.ndarray, g: np.ndarray, weights: np.ndarray
-) -> float:
-    """How far after node ``before``, in cells, the arclength is ``wanted``: Newton steps."""
-    start, end = place[HALO + before], place[HALO + before + 1]
-    part = (wanted - start) / (end - start)
-    if part <= 0.0:
-        return 0.0
-    first = HALO + before - BEFORE
-    for _ in range(_NEWTON_STEPS):
-        _lagrange(part, weights)
-        here = _weighted(place, first, weights)
-        early = part < 0.5
-        _lagrange(part + (0.5 if early else -0.5), weights)
-        slope = _weighted(g, first - 1 if early else first, weights)
-        step = (wanted - here) / slope
-        part += step
-        if abs(step) < _SETTLED:
-            break
-    return float(min(max(part, 0.0), 1.0))
+def _to_midpoints(
+    part: np.ndarray, first: np.ndarray, half: np.ndarray, middle: np.ndarray, size: int
+) -> None:
+    """Turn places between nodes into the same between midpoints."""
+    for b in range(size):
+        early = part[b] < 0.5
+        half[b] = part[b] + (0.5 if early else -0.5)
+        middle[b] = first[b] - np.uint64(1 if early else 0)
 
 
 @kernel
-def _lagrange(part: float, weights: np.ndarray) -> None:
-    """Weights of `TAPS` equal steps, from `BEFORE` before to a place ``part`` after one."""
-    product = 1.0
-    for tap in range(TAPS):
-        weights[tap] = product * _SCALES[tap]
-        product *= part + (BEFORE - tap)
-    product = 1.0
+def _lagrange(part: np.ndarray, weights: np.ndarray, size: int) -> None:
+    """Weights of `TAPS` equal steps, from `BEFORE` before to places ``part`` after one.
+
+    Many places at once, which lets the loops vectorise; the last row of ``weights`` is spare.
+    """
+    above = weights[TAPS]
+    for b in range(size):
+        weights[0, b] = above[b] = 1.0
+    for tap in range(1, TAPS):
+        for b in range(size):
+            weights[tap, b] = weights[tap - 1, b] * (part[b] + (BEFORE + 1 - tap))
     for tap in range(TAPS - 1, -1, -1):
-        weights[tap] *= product
-        product *= part + (BEFORE - tap)
+        for b in range(size):
+            weights[tap, b] *= _SCALES[tap] * above[b]
+            above[b] *= part[b] + (BEFORE - tap)
 
 
-@inlined_kernel
-def _weighted(a: np.ndarray, first: int, weights: np.ndarray) -> float:
-    value = 0.0
-    for tap in range(TAPS):
-        value += weights[tap] * a[np.uint64(first + tap)]
-    return value
+@kernel
+def _weighted(
+    a: np.ndarray, first: np.ndarray, weights: np.ndarray, size: int, out: np.ndarray
+) -> None:
+    for b in range(size):
+        even = odd = 0.0
+        for tap in range(0, TAPS, 2):
+            even += weights[tap, b] * a[first[b] + np.uint64(tap)]
+            odd += weights[tap + 1, b] * a[first[b] + np.uint64(tap + 1)]
+        out[b] = even + odd

@@ -202,6 +202,26 @@ def edge_on_mesh(profile: np.ndarray, g: np.ndarray, edge: np.ndarray, work: np.
 
 
 @kernel
+def fill_uniform(profile: np.ndarray, edge: np.ndarray) -> None:
+    """Give every midpoint the parameters, if they are the same all along the edge."""
+    if profile.shape[1] == 1:
+        for row in range(edge.shape[0]):
+            for i in range(edge.shape[1]):
+                edge[row, i] = profile[row, 0]
+
+
+@kernel
+def read_profile(
+    profile: np.ndarray, g: np.ndarray, edge: np.ndarray, mesh: np.ndarray, work: np.ndarray
+) -> None:
+    """Fill ``edge`` with the parameters at the midpoints of nodes of density ``g``."""
+    fill_uniform(profile, edge)
+    if profile.shape[1] > 1:
+        hold(g, mesh, edge.shape[1])
+        edge_on_mesh(profile, g, edge, work)
+
+
+@kernel
 def normalise(g: np.ndarray, nodes: int) -> None:
     """Bring the mean of the density back to 1, from which rounding takes it."""
     scale = nodes / total(g, nodes)

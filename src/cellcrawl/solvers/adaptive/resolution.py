@@ -40,7 +40,6 @@ _SCALE = 2.2
 _DOUBLE_DIFFERENCES = 5
 _FORMED = 0.1  # spread of the bound fraction along the edge of a formed cell
 _FLAT = 1e-6  # slopes below this are as good as none
-_ROUNDING = 3e-13  # waves smaller than this are what rounding leaves of none
 _HALO = np.uint64(HALO)
 _1 = np.uint64(1)
 
@@ -96,27 +95,21 @@ def allowance(allowed: float, contrast: float, formed: bool) -> float:
     return allowed * share * (1.0 if formed else _FORMING)
 
 
-def spectrum(*fields: np.ndarray) -> np.ndarray:
-    """Size of every wave in the slopes of fields on the nodes, shape (nodes // 2 + 1,).
-
-    The fields are the tangent angle less its winding, the bound fraction and the density of the
-    nodes. The squares sum to the mean square.
-    """
-    k = np.arange(fields[0].size // 2 + 1)
-    waves = np.abs(np.fft.rfft(np.stack(fields), axis=1)) / fields[0].size
-    waves[waves < _ROUNDING] = 0.0
-    return np.asarray(k * np.sqrt(np.sum(waves**2, axis=0)) * math.sqrt(2.0))
-
-
+@kernel
 def missed_on(waves: np.ndarray, nodes: int) -> float:
-    """Part of the slopes that a grid of ``nodes`` nodes misses of a state with these waves."""
-    phase = (2.0 * math.pi / nodes) * np.arange(waves.size)
-    part = (2.0 * np.sin(0.5 * phase) / _SCALE) ** (2 * _DOUBLE_DIFFERENCES)
-    part[phase > math.pi] = 1.0
-    size = math.sqrt(float(np.sum(waves**2)))
-    return math.sqrt(float(np.sum((part * waves) ** 2))) / (size + _FLAT)
+    """Part of the slopes that a grid of ``nodes`` nodes misses of a state with these `slopes`."""
+    square = lost = 0.0
+    for k in range(waves.size):
+        phase = 2.0 * math.pi / nodes * k
+        part = 1.0
+        if phase <= math.pi:
+            part = (2.0 * math.sin(0.5 * phase) / _SCALE) ** (2 * _DOUBLE_DIFFERENCES)
+        square += waves[k] * waves[k]
+        lost += (part * waves[k]) ** 2
+    return math.sqrt(lost) / (math.sqrt(square) + _FLAT)
 
 
+@kernel
 def fewest_nodes(waves: np.ndarray, allowed: float, low: int, high: int) -> int:
     """Return the smallest node count from ``low`` to ``high`` that misses no more than ``allowed``.
 
@@ -128,11 +121,20 @@ def fewest_nodes(waves: np.ndarray, allowed: float, low: int, high: int) -> int:
     return high + 1
 
 
+@kernel
 def finer(nodes: int, high: int) -> int:
     """Return the next larger node count up to ``high``; ``nodes`` if there is none."""
-    return next((count for count in NODE_COUNTS if _REFINE * nodes <= count <= high), nodes)
+    for count in NODE_COUNTS:
+        if _REFINE * nodes <= count <= high:
+            return count
+    return nodes
 
 
+@kernel
 def coarser(nodes: int, low: int) -> int:
     """Return the next smaller node count from ``low`` on; ``nodes`` if there is none."""
-    return next((n for n in reversed(NODE_COUNTS) if low <= n and _REFINE * n <= nodes), nodes)
+    found = nodes
+    for count in NODE_COUNTS:
+        if low <= count and _REFINE * count <= nodes:
+            found = count
+    return found

@@ -11,25 +11,25 @@ from cellcrawl.errors import InputError
 from cellcrawl.solvers.adaptive import drive, resolution
 from cellcrawl.solvers.adaptive import state as layout
 from cellcrawl.solvers.adaptive.differences import DIFFERENCES
-from cellcrawl.solvers.adaptive.frame import Shape, frame, instant, shape_between
-from cellcrawl.solvers.adaptive.mesh import MESH_ROWS, edge_on_mesh, hold, lay_out
+from cellcrawl.solvers.adaptive.frame import Shape, frame, shape_between
+from cellcrawl.solvers.adaptive.mesh import MESH_ROWS
 from cellcrawl.solvers.adaptive.newton import MATRIX_ROWS
 from cellcrawl.solvers.adaptive.place import around
 from cellcrawl.solvers.adaptive.projection import project
-from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, renew_rates
+from cellcrawl.solvers.adaptive.rates import WORK_ROWS
+from cellcrawl.solvers.adaptive.regrid import move_to_nodes, wanted_nodes
 from cellcrawl.solvers.adaptive.staggered import HALO
-from cellcrawl.solvers.adaptive.step_error import relative_size
+from cellcrawl.solvers.adaptive.waves import slopes
 from cellcrawl.solvers.base import Breakdown, Frame, Instant, Solver
 from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.starts.base import CellState
+from cellcrawl.surroundings import place
 from cellcrawl.validation import real_number, whole_number
 
 _STEPS_PER_CALL = 5000  # between two looks at Ctrl-C
 _START_NODES = 1024
 _USUAL_RTOL = 1e-4
 _TIGHT_RTOL = 1e-5  # below it a start is sampled more finely
-_FIRST_STEP = 0.2  # times the root of the tolerance, relative to the rate of change
-_SHORT = 1e-3  # a step at which the density of the nodes relaxes at its full rate
 _PLACES = 1024  # at which parameters that vary along the edge are read
 
 
@@ -63,6 +63,9 @@ class AdaptiveSolver(Solver):
         self._laws = conditions.laws.compiled
         self._compiled_surroundings = conditions.around()
         self._nodes = self.checked_nodes(nodes)
+        rows = len(conditions.laws.rows) + 1
+        self._placed = place.around(self._compiled_surroundings, rows, self._nodes)
+        self._constant: np.ndarray | None = None  # parameters of a run in which none changes
         self._rtol = real_number("rtol", rtol, 1e-10, 1e-2)
         counts = resolution.NODE_COUNTS
         self._max_nodes = whole_number("max_nodes", max_nodes, counts[0], counts[-1])
@@ -71,7 +74,7 @@ class AdaptiveSolver(Solver):
         self._counters = np.zeros(drive.COUNTERS, np.int64)
         self._tally = np.zeros(5)  # fewest nodes, most nodes, regrids, largest errors mended
         self._control[drive.TIME] = self._control[drive.PREVIOUS_TIME] = time
-        self._measured: tuple[float, Shape] | None = None
+        self._measured: Shape | None = None
         self._counters[drive.RESTARTING] = 1
         if start is not None:
             self._begin(start)
@@ -94,58 +97,64 @@ class AdaptiveSolver(Solver):
 
     def advance(self, target: float) -> Breakdown | None:
         self._measured = None
-        while self.time < target:
+        tolerance, allowed = _local_tolerance(self._rtol), _grid_tolerance(self._rtol)
+        control, counters = self._control, self._counters
+        while control[drive.TIME] < target:
             now = self.time
             end = self._conditions.next_break(now)
-            if self._counters[drive.RESTARTING] and not self._restart():
+            if counters[drive.RESTARTING] and not self._restart():
                 return self._no_root(now)
+            profile, ramping = self._next_parameters(now, end)
             code = drive.run(
                 self._laws,
                 self._around,
                 target,
                 end,
-                _local_tolerance(self._rtol),
+                tolerance,
                 _STEPS_PER_CALL,
-                _grid_tolerance(self._rtol),
-                (self._min_nodes, self._max_nodes),
-                self._control,
-                self._counters,
+                allowed,
+                self._min_nodes,
+                self._max_nodes,
+                control,
+                counters,
                 self._table,
                 self._log_rate,
-                *self._edge(now, end),
+                profile,
+                self._edge,
+                ramping,
                 self._mesh,
                 self._matrix,
                 self._work,
             )
             if code == drive.AT_BREAK:
-                self._counters[drive.RESTARTING] = 1
+                counters[drive.RESTARTING] = 1
             elif code == drive.CHECK_NODES:
-                self._fit_grid()
+                self._fit_grid(allowed)
             elif code in (drive.NO_ROOT, drive.STEP_TOO_SMALL, drive.UNRESOLVED):
                 return self._stuck(code)
         return None
 
     def instant(self, time: float) -> Instant:
-        return instant(time, self._shape(time))
+        return self._shape(time).instant
 
     def frame(self, time: float) -> Frame:
-        edge = self._conditions.edge(time, self._nodes)
-        return frame(
-            self._laws, self._compiled_surroundings, time, self._shape(time), self._log_rate, edge
-        )
+        profile = self._parameters(time, self._nodes)
+        shape = self._shape(time)
+        return frame(self._laws, self._placed, shape, self._log_rate, profile, self._nodes)
 
     def _shape(self, time: float) -> Shape:
         """Return the edge at ``time``, measured once."""
-        if self._measured is not None and self._measured[0] == time:
-            return self._measured[1]
+        if self._measured is not None and self._measured.instant.time == time:
+            return self._measured
         first, last = self._control[drive.PREVIOUS_TIME], self.time
         if not first <= time <= last:
             raise ValueError(f"t = {time} is not within the last step, from {first} to {last}")
         steps = (time - last) / self._control[drive.STEP]
-        shape = shape_between(steps, int(self._counters[drive.ORDER]), self._table)
-        self._tally[3] = max(self._tally[3], shape.closure_error)
-        self._tally[4] = max(self._tally[4], shape.area_error)
-        self._measured = (time, shape)
+        shape = shape_between(time, steps, int(self._counters[drive.ORDER]), self._table)
+        closure, area = shape.mended
+        self._tally[3] = max(self._tally[3], closure)
+        self._tally[4] = max(self._tally[4], area)
+        self._measured = shape
         return shape
 
     def checkpoint(self) -> dict[str, np.ndarray]:
@@ -195,8 +204,9 @@ class AdaptiveSolver(Solver):
 
     def _begin(self, start: CellState) -> None:
         curve = start.curve
-        waves = resolution.spectrum(curve.theta - layout.winding(curve.nodes), start.bound_fraction)
-        allowed = resolution.allowance(_grid_tolerance(self._rtol), 0.0, formed=False)
+        density = np.ones(curve.nodes)
+        waves = slopes(curve.theta - layout.winding(curve.nodes), start.bound_fraction, density)
+        allowed = resolution.allowance(_grid_tolerance(self._rtol), 0.0, False)
         if resolution.missed_on(waves, curve.nodes) > 3.0 * allowed:
             raise InputError(
                 f"the start is not resolved on {curve.nodes} nodes at rtol = {self._rtol:g}: "
@@ -221,125 +231,92 @@ class AdaptiveSolver(Solver):
 
     def _hold(self, differences: np.ndarray) -> None:
         """Take up the differences of the state and make room for the work on them."""
-        self._measured = None
-        nodes = layout.nodes_of(differences)
-        self._table = np.zeros((drive.TABLE_ROWS, layout.size(nodes)))
+        self._make_room(layout.nodes_of(differences))
         self._table[:DIFFERENCES] = differences
+
+    def _make_room(self, nodes: int) -> None:
+        """Make the arrays that work on so many nodes needs."""
+        self._measured = None
+        self._table = np.zeros((drive.TABLE_ROWS, layout.size(nodes)))
+        self._log_rate = np.zeros(nodes)
         self._work = np.zeros((WORK_ROWS, nodes + 2 * HALO))
         self._mesh = np.zeros((MESH_ROWS, nodes + 2 * HALO))
         self._matrix = np.zeros((MATRIX_ROWS, nodes))
         rows = len(self._conditions.laws.rows) + 1
+        self._edge = np.zeros((rows, nodes))
         self._around = around(self._compiled_surroundings, rows, nodes)
         self._control[drive.FACTORED] = 0.0
-        self._edges: tuple[float, np.ndarray, np.ndarray] | None = None
         self._tally[0] = min(self._tally[0] or nodes, nodes)
         self._tally[1] = max(self._tally[1], nodes)
 
     def _restart(self) -> bool:
-        """Take the rates under the parameters that hold now, and begin with a short step."""
-        table, control, counters = self._table, self._control, self._counters
-        nodes = layout.nodes_of(table)
-        edge = self._midpoints(self.time)
-        lay_out(*layout.fields(table[0]), _SHORT, 1, self._mesh, nodes)
-        renew_rates(self._laws, self._log_rate, edge, self._work)
-        table[1:] = 0.0
-        counters[drive.RATES] += 1
-        if not rates(
+        """Begin anew under the parameters that hold now; False if they allow no root."""
+        return drive.restart(
             self._laws,
             self._around,
-            self.time,
-            table[0],
-            table[1],
+            _local_tolerance(self._rtol),
+            self._control,
+            self._counters,
+            self._table,
             self._log_rate,
-            edge,
+            self._parameters(self.time),
+            self._edge,
             self._mesh,
             self._work,
-        ):
-            return False
-        _, control[drive.CONTRAST] = resolution.missed(table[0], nodes, self._work)
-        control[drive.FORMATION] = resolution.formation(layout.fields(table[0])[1], nodes)
-        pace = relative_size(table[1], table[0], nodes, 1.0)
-        control[drive.STEP] = _FIRST_STEP * math.sqrt(_local_tolerance(self._rtol)) / (1.0 + pace)
-        table[1] *= control[drive.STEP]
-        control[drive.CONTRACTION] = drive.UNKNOWN_CONTRACTION
-        control[drive.FACTORED] = 0.0
-        counters[drive.ORDER] = 1
-        counters[drive.EQUAL_STEPS] = counters[drive.RESTARTING] = 0
-        return True
+        )
 
-    def _edge(self, now: float, end: float) -> tuple[np.ndarray, np.ndarray, bool]:
-        """Parameters at the end of the next step, and whether they are moving.
-
-        As a profile over equal arclengths and at the midpoints; the former has one place where
-        they are the same all along the edge, and the latter is then complete.
-        """
+    def _next_parameters(self, now: float, end: float) -> tuple[np.ndarray, bool]:
+        """Parameters at the end of the next step, and whether they are moving."""
         if not self._conditions.varies(now, end):
-            if self._edges is None or self._edges[0] != end:
-                self._edges = (end, *self._parameters(now))
-            return *self._edges[1:], False
+            return self._parameters(now), False
         h = drive.bounded_step(self._control[drive.STEP], now, end)
         if h == end - now:
-            return *self._parameters(end, before=True), True
-        return *self._parameters(now + h), True
+            return self._parameters(end, before=True), True
+        return self._parameters(now + h), True
 
-    def _parameters(self, time: float, *, before: bool = False) -> tuple[np.ndarray, np.ndarray]:
-        """Local parameters and G as `_edge` returns them, (rows, places) and (rows, nodes)."""
-        places = 1 if self._conditions.uniform else _PLACES
+    def _parameters(
+        self, time: float, places: int = _PLACES, *, before: bool = False
+    ) -> np.ndarray:
+        """Local parameters and G at equal arclengths, shape (rows, places).
+
+        At one place where they are the same all along the edge.
+        """
+        if self._constant is not None:
+            return self._constant
+        if self._conditions.uniform:
+            places = 1
         local = self._conditions.edge(time, places, before=before)
         rate = self._conditions.tension_rate(time, before=before)
         profile = np.vstack([local, np.full(places, rate)])
-        return profile, np.repeat(profile[:, :1], layout.nodes_of(self._table), axis=1)
+        if places == 1 and not self._conditions.schedule.breaks:
+            self._constant = profile
+        return profile
 
-    def _midpoints(self, time: float) -> np.ndarray:
-        """Local parameters at the midpoints as they are now and G, shape (rows, nodes)."""
-        profile, edge = self._parameters(time)
-        if profile.shape[1] > 1:
-            _, _, density = layout.fields(self._table[0])
-            hold(density, self._mesh, edge.shape[1])
-            edge_on_mesh(profile, density, edge, self._work)
-        return edge
-
-    def _fit_grid(self) -> None:
+    def _fit_grid(self, allowed: float) -> None:
         """Go on with as many nodes as the spectrum asks for."""
-        nodes = layout.nodes_of(self._table)
-        due = int(self._counters[drive.CHECK_DUE])
-        self._counters[drive.CHECK_DUE] = drive.KEEP
-        if due == drive.FINER:
-            wanted = resolution.finer(nodes, self._max_nodes)
-        elif due == drive.COARSER:
-            wanted = resolution.coarser(nodes, self._min_nodes)
-        else:
-            wanted = self._fewest_nodes(nodes)
-        if wanted != nodes:
-            self._hold(layout.regridded(self._table[:DIFFERENCES], wanted))
-            self._log_rate = layout.resampled_midpoints(self._log_rate, wanted)
-            self._tally[2] += 1
-            self._control[drive.MISSED] *= (nodes / wanted) ** 10
-            self._control[drive.PEAK] *= (nodes / wanted) ** 5
-            edge = self._midpoints(self.time)
-            self._counters[drive.RATES] += 1
-            drive.bend_history(
-                self._laws,
-                self._around,
-                self._control,
-                self._counters,
-                self._table,
-                self._log_rate,
-                edge,
-                self._mesh,
-                self._matrix,
-                self._work,
-            )
-
-    def _fewest_nodes(self, nodes: int) -> int:
-        """Return as many nodes as the spectrum of the state asks for, ``nodes`` at most."""
-        state, control = self._table[0], self._control
-        allowed = resolution.allowance(
-            _grid_tolerance(self._rtol), control[drive.CONTRAST], formed=False
+        control, counters = self._control, self._counters
+        table, log_rate = self._table, self._log_rate
+        wanted = wanted_nodes(
+            allowed, self._min_nodes, self._max_nodes, control, counters, table, log_rate.size
         )
-        waves = resolution.spectrum(layout.angle(state), layout.bound(state), layout.density(state))
-        return resolution.fewest_nodes(
-            waves, resolution.COARSEN * allowed, self._min_nodes, nodes - 1
+        if wanted == log_rate.size:
+            return
+        self._make_room(wanted)
+        self._tally[2] += 1
+        move_to_nodes(
+            self._laws,
+            self._around,
+            control,
+            counters,
+            table,
+            log_rate,
+            self._table,
+            self._log_rate,
+            self._parameters(self.time),
+            self._edge,
+            self._mesh,
+            self._matrix,
+            self._work,
         )
 
     def _no_root(self, time: float) -> Breakdown:

@@ -68,18 +68,3 @@ def from_cell(cell: CellState, nodes: int) -> np.ndarray:
     values[LENGTH], values[TENSION], values[AREA] = curve.length, cell.tension, curve.area
     values[ORIGIN_X : ORIGIN_X + 2] = curve.origin
     return state
-
-
-def regridded(states: np.ndarray, nodes: int) -> np.ndarray:
-    """Return a stack of states on another number of nodes, node 0 in place."""
-    moved = np.zeros((len(states), size(nodes)))
-    angle(moved)[:] = fourier.resample(angle(states), nodes)
-    bound(moved)[:] = resampled_midpoints(bound(states), nodes)
-    density(moved)[:] = resampled_midpoints(density(states), nodes)
-    scalars(moved)[:] = scalars(states)
-    return moved
-
-
-def resampled_midpoints(samples: np.ndarray, nodes: int) -> np.ndarray:
-    """Return samples at midpoints on another number of nodes."""
-    return fourier.resample(samples, nodes, math.pi / nodes - math.pi / samples.shape[-1])
