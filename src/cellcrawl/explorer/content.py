@@ -11,6 +11,8 @@ import numpy as np
 from matplotlib.colors import to_hex
 
 from cellcrawl.explorer.cards import CARDS
+from cellcrawl.explorer.entries import layout
+from cellcrawl.explorer.links import PULSES
 from cellcrawl.explorer.presets import PRESETS
 from cellcrawl.modes.confidence import FILE
 from cellcrawl.modes.evidence import WORDS, Evidence
@@ -35,6 +37,8 @@ def content() -> dict[str, Any]:
         "colours": {SCALES[f].colormap: _colours(SCALES[f].colormap) for f in _FIELDS},
         "scales": {name: getattr(scales, name) for name in scales.field_names()},
         "limits": {name: [about.low, about.high] for name, about in DESCRIPTIONS.items()},
+        "layout": layout(),
+        "pulses": PULSES,
         "meanings": {name: about.meaning for name, about in DESCRIPTIONS.items()},
         "map": {**_shading(), "modes": kept["modes"]},
         "presets": [{**preset.as_content(), "picture": pictures[preset.key]} for preset in PRESETS],

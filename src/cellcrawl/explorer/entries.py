@@ -1,127 +1,356 @@
-from typing import Any, NamedTuple
-import math
-import numpy as np
-from numba import carray, njit
-from numba.core import types
-from cellcrawl._compile import kernel
-from cellcrawl.laws.law import PAPER
-from cellcrawl.solvers.adaptive import drive, resolution
-from cellcrawl.solvers.adaptive.drive import *
-from cellcrawl.solvers.adaptive.drive import run, FACTORED, CONTRACTION, UNKNOWN_CONTRACTION, TABLE_ROWS, CONTROLS, COUNTERS
-from cellcrawl.solvers.adaptive.differences import DIFFERENCES
-from cellcrawl.solvers.adaptive.mesh import MESH_ROWS, lay_out
-from cellcrawl.solvers.adaptive.newton import MATRIX_ROWS
-from cellcrawl.solvers.adaptive.rates import WORK_ROWS, rates, renew_rates
-from cellcrawl.solvers.adaptive.staggered import HALO
-from cellcrawl.solvers.adaptive.step_error import relative_size
-from cellcrawl.solvers.adaptive.frame import _edge_shape, _sample, _balance
-from cellcrawl.solvers.adaptive.projection import TRACE_ROWS
-from cellcrawl.solvers.adaptive.entries import TENSION
+"""What a page can call: the solver's own kernels on arrays at given places of its memory.
 
-from cellcrawl.explorer.starting import random_start
+A page lays out the arrays that `AdaptiveSolver` holds, and calls in its order: a start, `advance`
+again and again, `move` to other nodes where that asks for it, `frame` to look. Everything that the
+solver computes is computed by its own kernels; here pointers become arrays, no more.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final, NamedTuple
+
+import numba
+import numpy as np
+from numba.core import types
+
 from cellcrawl.curve.crossing import crossing_edges
+from cellcrawl.explorer.starting import random_start
+from cellcrawl.laws.law import PAPER
+from cellcrawl.solvers.adaptive import drive
+from cellcrawl.solvers.adaptive.entries import FIELDS, SCALARS
+from cellcrawl.solvers.adaptive.frame import edge_shape, fill_frame
+from cellcrawl.solvers.adaptive.mesh import MESH_ROWS
+from cellcrawl.solvers.adaptive.newton import MATRIX_ROWS
+from cellcrawl.solvers.adaptive.place import Around
+from cellcrawl.solvers.adaptive.projection import TRACE_ROWS, project
+from cellcrawl.solvers.adaptive.rates import WORK_ROWS
+from cellcrawl.solvers.adaptive.regrid import move_to_nodes, wanted_nodes
+from cellcrawl.solvers.adaptive.resolution import NODE_COUNTS, allowance, fewest_nodes, missed_on
+from cellcrawl.solvers.adaptive.staggered import HALO
+from cellcrawl.solvers.adaptive.waves import resample, slopes
+from cellcrawl.surroundings import Islands, LocalPulse, Pillars, Surroundings
+from cellcrawl.surroundings.place import Around as AroundEdge
+
+MOST_DISCS: Final = 200  # of islands, and of pillars
+OUTPUT_ROWS: Final = 8
+ROWS: Final = len(PAPER.rows) + 1
+FEWEST, MOST = NODE_COUNTS[0], NODE_COUNTS[-1]
+REACHED, BROKEN, UNRESOLVED_START = 0, 100, 101
+MOVE: Final = 10_000  # and the number of nodes: what `advance` returns where it asks for others
+_STEPS_PER_CALL: Final = 5000
+_TABLE_ROWS, _CONTROLS, _COUNTERS = drive.TABLE_ROWS, drive.CONTROLS, drive.COUNTERS
+_TIME, _RESTARTING = drive.TIME, drive.RESTARTING
+_AT_BREAK, _CHECK_NODES, _PAUSED, _RETRY = (
+    drive.AT_BREAK,
+    drive.CHECK_NODES,
+    drive.PAUSED,
+    drive.RETRY,
+)
+_ORDER: Final = drive.ORDER
+_carray: Any = numba.carray
+
+GROUND: Final = Surroundings(
+    [
+        Islands([[0.0, 0.0, 1e6]] * MOST_DISCS),
+        Pillars([[1e6, 1e6, 1.0]] * MOST_DISCS),
+        LocalPulse(begin=-1e9),
+    ]
+)
+"""What can be painted and done on the page; with these numbers it changes nothing."""
+
+
 class Entry(NamedTuple):
+    """A function that the module exports: its name, what it does, and its Numba signature."""
+
     name: str
     function: Any
     signature: Any
 
-LAW = PAPER.compiled
-ROWS = len(PAPER.rows) + 1
-F, I = types.CPointer(types.float64), types.CPointer(types.int64)
 
-@kernel
-def restart(laws, around, tolerance, control, counters, table, y, edge, mesh, work):
-    nodes = y.size
+def layout() -> dict[str, Any]:
+    """Return sizes and numbers that whoever calls the entries needs."""
+    data = GROUND.compiled(PAPER).data
+    return {
+        "rows": list(PAPER.rows),
+        "halo": HALO,
+        "fields": FIELDS,
+        "scalars": SCALARS,
+        "table_rows": _TABLE_ROWS,
+        "controls": _CONTROLS,
+        "counters": _COUNTERS,
+        "mesh_rows": MESH_ROWS,
+        "work_rows": WORK_ROWS,
+        "matrix_rows": MATRIX_ROWS,
+        "trace_rows": TRACE_ROWS,
+        "differences": drive.DIFFERENCES,
+        "most_nodes": MOST,
+        "time": _TIME,
+        "previous_time": drive.PREVIOUS_TIME,
+        "step": drive.STEP,
+        "factored": drive.FACTORED,
+        "steps": drive.STEPS,
+        "restarting": _RESTARTING,
+        "codes": {
+            "at_break": _AT_BREAK,
+            "no_root": drive.NO_ROOT,
+            "step_too_small": drive.STEP_TOO_SMALL,
+            "unresolved": drive.UNRESOLVED,
+            "broken": BROKEN,
+            "unresolved_start": UNRESOLVED_START,
+            "move": MOVE,
+        },
+        "ground": data.tolist(),
+        "most_discs": MOST_DISCS,
+    }
+
+
+def start(
+    modes: int,
+    count: int,
+    n_bar: float,
+    allowed: float,
+    amplitudes_at: Any,
+    theta_at: Any,
+    bound_at: Any,
+    whole_at: Any,
+) -> int:
+    """Make the random start; return the nodes it asks for, length and area in ``whole``."""
+    theta, bound = _carray(theta_at, (count,)), _carray(bound_at, (count,))
+    whole = _carray(whole_at, (16,))
+    length, area = random_start(_carray(amplitudes_at, (modes, 4)), n_bar, theta, bound)
+    whole[0], whole[1] = length, area
+    angle, density = np.empty(count), np.ones(count)
+    for i in range(count):
+        theta[i] -= 2.0 * np.pi * i / count
+        angle[i] = theta[i]
+    waves = slopes(angle, bound, density)
+    may_miss = allowance(allowed, 0.0, False)
+    if missed_on(waves, count) > 3.0 * may_miss:
+        return UNRESOLVED_START
+    nodes = fewest_nodes(waves, may_miss, FEWEST, MOST)
+    return nodes if nodes <= MOST else UNRESOLVED_START
+
+
+def settle(
+    nodes: int, count: int, theta_at: Any, bound_at: Any, table_at: Any, work_at: Any
+) -> int:
+    """Put a start on its nodes; the state's scalars are there already."""
     span = nodes + 2 * HALO
-    s = table[0]
-    lay_out(s[:span], s[span:2*span], s[2*span:3*span], 1e-3, 1, mesh, nodes)
-    renew_rates(laws, y, edge, work)
-    for j in range(1, table.shape[0]):
-        for k in range(table.shape[1]):
-            table[j, k] = 0.0
-    counters[RATES] += 1
-    if not rates(laws, around, control[TIME], s, table[1], y, edge, mesh, work):
-        return False
-    _, control[CONTRAST] = resolution.missed(s, nodes, work)
-    control[FORMATION] = resolution.formation(s[span:2*span], nodes)
-    pace = relative_size(table[1], s, nodes, 1.0)
-    control[STEP] = 0.2 * math.sqrt(tolerance) / (1.0 + pace)
-    for k in range(table.shape[1]):
-        table[1, k] *= control[STEP]
-    control[CONTRACTION] = UNKNOWN_CONTRACTION
-    control[FACTORED] = 0.0
-    counters[ORDER] = 1
-    counters[EQUAL_STEPS] = 0
-    counters[RESTARTING] = 0
-    return True
+    table = _carray(table_at, (_TABLE_ROWS, FIELDS * span + SCALARS))
+    work = _carray(work_at, (WORK_ROWS, span))
+    theta, bound = _carray(theta_at, (count,)), _carray(bound_at, (count,))
+    state = table[0]
+    inner, middle = slice(HALO, HALO + nodes), slice(span + HALO, span + HALO + nodes)
+    resample(theta, theta, 0.0, state[inner], state[inner])
+    resample(bound, bound, np.pi / nodes, state[middle], state[middle])
+    for i in range(nodes):
+        state[2 * span + HALO + i] = 1.0
+    project(state, nodes, work)
+    return REACHED
 
-def advance(nodes, target, rtol, control_, counters_, table_, y_, edge_, mesh_, work_, matrix_):
-    span = nodes + 2 * HALO
-    control = carray(control_, (CONTROLS,))
-    counters = carray(counters_, (COUNTERS,))
-    table = carray(table_, (TABLE_ROWS, 3 * span + 8))
-    y = carray(y_, (nodes,))
-    edge = carray(edge_, (ROWS, nodes))
-    mesh = carray(mesh_, (MESH_ROWS, span))
-    work = carray(work_, (WORK_ROWS, span))
-    matrix = carray(matrix_, (MATRIX_ROWS, nodes))
-    tol = 0.002 * rtol
-    while control[TIME] < target:
-        if counters[RESTARTING]:
-            if not restart(LAW, None, tol, control, counters, table, y, edge, mesh, work):
-                return 100
-        code = run(LAW, None, target, np.inf, tol, 5000, max(3.0 * rtol, 1e-9), (nodes, nodes),
-            control, counters, table, y, edge[:, :1].copy(), edge, False, mesh, matrix, work)
-        if code == PAUSED:
-            return 101
-        if code != REACHED:
-            return code
-    return 0
 
-def frame(nodes, count, steps, control_, counters_, table_, y_, edge_, state_, trace_, guess_, out_, whole_):
-    span = nodes + 2 * HALO
-    control = carray(control_, (CONTROLS,))
-    counters = carray(counters_, (COUNTERS,))
-    table = carray(table_, (TABLE_ROWS, 3 * span + 8))
-    y = carray(y_, (nodes,))
-    edge = carray(edge_, (ROWS, count))
-    state = carray(state_, (3 * span + 8,))
-    trace = carray(trace_, (TRACE_ROWS + 1, span))
-    guess = carray(guess_, (count,))
-    out = carray(out_, (8, count))
-    whole = carray(whole_, (16,))
-    area, x, yy, gap, excess, clear = _edge_shape(steps, counters[ORDER], table, state, trace)
-    for k in range(8):
-        whole[k] = state[3 * span + k]
-    whole[8] = area
-    whole[9] = x + whole[3]
-    whole[10] = yy + whole[4]
-    whole[11] = gap
-    whole[12] = excess
-    whole[13] = clear
-    _sample(state, trace, y, guess, out)
-    _balance(LAW, whole[1], edge, guess, out)
-    return 0
+def crossing(count: int, x_at: Any, y_at: Any) -> int:
+    """Return an edge of the outline that crosses another, -1 if there is none."""
+    first, _ = crossing_edges(_carray(x_at, (count,)), _carray(y_at, (count,)))
+    return first
 
-def start(modes, count, n_bar, amplitudes_, theta_, bound_, whole_):
-    amplitudes = carray(amplitudes_, (modes, 4))
-    theta = carray(theta_, (count,))
-    bound = carray(bound_, (count,))
-    whole = carray(whole_, (16,))
-    length, area = random_start(amplitudes, n_bar, theta, bound)
-    whole[0] = length
-    whole[1] = area
-    return 0
 
-def crossing(count, x_, y_):
-    i, j = crossing_edges(carray(x_, (count,)), carray(y_, (count,)))
-    return i
+def _on_the_way(surrounded: bool) -> tuple[Any, Any, Any]:
+    """Return `advance`, `move` and `frame` for a cell that is alone, or has a ground."""
+    law = PAPER.compiled
+    ground = GROUND.compiled(PAPER)
+    entries = ground.data.size
 
-def entries():
-    i32, f = types.int32, types.float64
-    return [
-        Entry("start", start, i32(i32, i32, f, F, F, F, F)),
-        Entry("crossing", crossing, i32(i32, F, F)),
-        Entry("advance", advance, i32(i32, f, f, F, I, F, F, F, F, F, F)),
-        Entry("frame", frame, i32(i32, i32, f, F, I, F, F, F, F, F, F, F, F)),
+    if surrounded:
+
+        def around(data_at: Any, local_at: Any, room_at: Any, nodes: int) -> Any:
+            data = _carray(data_at, (entries,))
+            local = _carray(local_at, (ROWS, nodes))
+            return Around(ground, data, local, _carray(room_at, (TRACE_ROWS, nodes + 2 * HALO)))
+
+        def around_edge(data_at: Any, local_at: Any, count: int) -> Any:
+            data = _carray(data_at, (entries,))
+            return AroundEdge(ground, data, _carray(local_at, (ROWS, count)))
+
+    else:
+
+        def around(data_at: Any, local_at: Any, room_at: Any, nodes: int) -> Any:
+            return None
+
+        def around_edge(data_at: Any, local_at: Any, count: int) -> Any:
+            return None
+
+    around = numba.extending.register_jitable(around)
+    around_edge = numba.extending.register_jitable(around_edge)
+
+    def advance(
+        nodes: int,
+        target: float,
+        end: float,
+        tolerance: float,
+        allowed: float,
+        control_at: Any,
+        counters_at: Any,
+        table_at: Any,
+        y_at: Any,
+        profile_at: Any,
+        edge_at: Any,
+        mesh_at: Any,
+        matrix_at: Any,
+        work_at: Any,
+        data_at: Any,
+        local_at: Any,
+        room_at: Any,
+    ) -> int:
+        span = nodes + 2 * HALO
+        control, counters = _carray(control_at, (_CONTROLS,)), _carray(counters_at, (_COUNTERS,))
+        table = _carray(table_at, (_TABLE_ROWS, FIELDS * span + SCALARS))
+        y, profile = _carray(y_at, (nodes,)), _carray(profile_at, (ROWS, 1))
+        edge, mesh = _carray(edge_at, (ROWS, nodes)), _carray(mesh_at, (MESH_ROWS, span))
+        matrix, work = _carray(matrix_at, (MATRIX_ROWS, nodes)), _carray(work_at, (WORK_ROWS, span))
+        place = around(data_at, local_at, room_at, nodes)
+        while control[_TIME] < target or counters[_RESTARTING] != 0:
+            if counters[_RESTARTING] != 0:
+                began = drive.restart(
+                    law, place, tolerance, control, counters, table, y, profile, edge, mesh, work
+                )
+                if not began:
+                    return BROKEN
+                if control[_TIME] >= target:
+                    return REACHED
+            code = drive.run(
+                law,
+                place,
+                target,
+                end,
+                tolerance,
+                _STEPS_PER_CALL,
+                allowed,
+                FEWEST,
+                MOST,
+                control,
+                counters,
+                table,
+                y,
+                profile,
+                edge,
+                False,
+                mesh,
+                matrix,
+                work,
+            )
+            if code == _AT_BREAK:
+                counters[_RESTARTING] = 1
+                return code
+            if code == _CHECK_NODES:
+                wanted = wanted_nodes(allowed, FEWEST, MOST, control, counters, table, nodes)
+                if wanted != nodes:
+                    return MOVE + wanted
+            elif code not in (REACHED, _PAUSED, _RETRY):
+                return code
+        return REACHED
+
+    def move(
+        old: int,
+        nodes: int,
+        control_at: Any,
+        counters_at: Any,
+        old_table_at: Any,
+        old_y_at: Any,
+        table_at: Any,
+        y_at: Any,
+        profile_at: Any,
+        edge_at: Any,
+        mesh_at: Any,
+        matrix_at: Any,
+        work_at: Any,
+        data_at: Any,
+        local_at: Any,
+        room_at: Any,
+    ) -> int:
+        span = nodes + 2 * HALO
+        move_to_nodes(
+            law,
+            around(data_at, local_at, room_at, nodes),
+            _carray(control_at, (_CONTROLS,)),
+            _carray(counters_at, (_COUNTERS,)),
+            _carray(old_table_at, (_TABLE_ROWS, FIELDS * (old + 2 * HALO) + SCALARS)),
+            _carray(old_y_at, (old,)),
+            _carray(table_at, (_TABLE_ROWS, FIELDS * span + SCALARS)),
+            _carray(y_at, (nodes,)),
+            _carray(profile_at, (ROWS, 1)),
+            _carray(edge_at, (ROWS, nodes)),
+            _carray(mesh_at, (MESH_ROWS, span)),
+            _carray(matrix_at, (MATRIX_ROWS, nodes)),
+            _carray(work_at, (WORK_ROWS, span)),
+        )
+        return REACHED
+
+    def frame(
+        nodes: int,
+        count: int,
+        time: float,
+        steps: float,
+        counters_at: Any,
+        table_at: Any,
+        y_at: Any,
+        profile_at: Any,
+        state_at: Any,
+        trace_at: Any,
+        edge_at: Any,
+        out_at: Any,
+        whole_at: Any,
+        data_at: Any,
+        local_at: Any,
+    ) -> int:
+        span = nodes + 2 * HALO
+        order = _carray(counters_at, (_COUNTERS,))[_ORDER]
+        table = _carray(table_at, (_TABLE_ROWS, FIELDS * span + SCALARS))
+        state = _carray(state_at, (FIELDS * span + SCALARS,))
+        trace = _carray(trace_at, (TRACE_ROWS, span))
+        whole = _carray(whole_at, (16,))
+        area, x, y, _, _, clearance = edge_shape(steps, order, table, state, trace)
+        for k in range(SCALARS):
+            whole[k] = state[FIELDS * span + k]
+        whole[8], whole[9], whole[10], whole[11] = area, x + whole[3], y + whole[4], clearance
+        fill_frame(
+            law,
+            around_edge(data_at, local_at, count),
+            time,
+            state,
+            trace,
+            _carray(y_at, (nodes,)),
+            _carray(profile_at, (ROWS, 1)),
+            _carray(edge_at, (ROWS + 1, count)),
+            _carray(out_at, (OUTPUT_ROWS, count)),
+        )
+        return REACHED
+
+    return advance, move, frame
+
+
+def entries() -> list[Entry]:
+    """Return all entry points of the module."""
+    i32, f64 = types.int32, types.float64
+    floats, ints = types.CPointer(f64), types.CPointer(types.int64)
+
+    def takes(*given: Any) -> Any:
+        return i32(*given)
+
+    found = [
+        Entry("start", start, takes(i32, i32, f64, f64, *[floats] * 4)),
+        Entry("settle", settle, takes(i32, i32, *[floats] * 4)),
+        Entry("crossing", crossing, takes(i32, floats, floats)),
     ]
+    for name, surrounded in (("", False), ("_on_ground", True)):
+        advance, move, frame = _on_the_way(surrounded)
+        found += [
+            Entry(
+                f"advance{name}",
+                advance,
+                takes(i32, f64, f64, f64, f64, floats, ints, *[floats] * 10),
+            ),
+            Entry(f"move{name}", move, takes(i32, i32, floats, ints, *[floats] * 12)),
+            Entry(f"frame{name}", frame, takes(i32, i32, f64, f64, ints, *[floats] * 10)),
+        ]
+    return found

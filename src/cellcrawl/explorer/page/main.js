@@ -181,6 +181,7 @@ class Page {
     $("speed").oninput = (event) => { this.view.speed = 10 ** Number(event.target.value); this.showSpeed(); };
     $("field").onchange = (event) => { this.view.field = event.target.value; this.mapDirty = true; };
     $("camera").onchange = (event) => (this.view.camera = event.target.value);
+    $("clean").onclick = () => this.wipe();
     $("units").onchange = (event) => { usePhysical(event.target.checked); this.view.units = event.target.checked ? "si" : "none"; this.fresh = true; this.sync(); this.shownPlaces.forEach((place) => this.tell(place)); };
     $("dice").onclick = () => this.again({ ...this.run.setup, parameters: this.run.latest, seed: this.run.setup.seed + 1, events: [] });
     $("seed").onchange = (event) => {
@@ -241,7 +242,25 @@ class Page {
     });
   }
 
-  touch() {}
+  touch(place, [x, y], first) {
+    const { run } = place;
+    if (run.status !== "running") return;
+    if (this.tool === "release" || this.tool === "push") {
+      if (!first) return;
+      run.poke(this.tool, x, y);
+      return;
+    }
+    const kind = this.tool === "island" ? "islands" : "pillars", radius = this.tool === "island" ? 1 : 0.35;
+    const last = run.setup[kind].at(-1);
+    if (!first && last && Math.hypot(x - last[0], y - last[1]) < 0.6 * radius) return;
+    if (!run.paint(kind, [x, y, radius])) this.notice(`There is room for ${DATA.layout.most_discs} discs of each kind.`);
+    this.painted = true;
+  }
+
+  wipe() {
+    this.run.wipe();
+    this.sync();
+  }
 
   outlineActive() {
     this.places.forEach((place, k) => place.element.classList.toggle("active", k === this.active));

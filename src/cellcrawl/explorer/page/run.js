@@ -1,6 +1,7 @@
 // A run: a cell from its start on, what is done to it, and what has been seen of it.
 
-import { Cell, FIELDS, POINTS } from "./cell.js";
+import { Cell, ENDS, FIELDS, POINTS } from "./cell.js";
+import { DATA } from "./data.js";
 import { classify } from "./rule.js";
 
 export const EVERY = 0.1; // between two records, as in the package
@@ -35,13 +36,19 @@ export class Run {
       seed: setup.seed ?? 1,
       rtol: setup.rtol ?? 1e-4,
       events: (setup.events ?? []).map((event) => ({ at: event.at, set: { ...event.set } })),
+      islands: [...(setup.islands ?? [])],
+      pillars: [...(setup.pillars ?? [])],
+      pokes: (setup.pokes ?? []).map((poke) => ({ ...poke })).sort((a, b) => a.at - b.at),
     };
     this.parameters = { ...this.setup.parameters };
     this.status = "running";
+    this.ended = 0; // when
+    this.exact = true; // whether the setup alone makes this run
     this.now = 0;
     this.count = 0; // records so far
     this.changed = 0; // time of the last change
     this.done = 0; // events done
+    this.poked = 0; // pokes begun
     this.track = { t: [], x: [], y: [], every: 1 };
     this.ghosts = [];
     this.recent = {
@@ -52,34 +59,69 @@ export class Run {
       bound_fraction: new Float32Array(KEPT * RINGS), curvature: new Float32Array(KEPT * RINGS),
     };
     this.mode = { mode: "", confidence: 0, words: "" };
-    try {
-      this.cell.begin(this.parameters, this.setup.seed);
-    } catch (error) {
-      return this._end("failed");
-    }
-    this._record(0);
+    const { islands, pillars } = this.setup;
+    if (islands.length || pillars.length) this.cell.paint(islands, pillars);
+    const failed = this.cell.begin(this.parameters, this.setup.seed);
+    if (failed) this._end(failed, 0);
+    else this._record(0);
   }
 
-  // Parameters change as soon as the solver can land on a time for it; returns that time.
+  // Change parameters as soon as can be said in a schedule; returns when.
   change(values) {
-    const at = Math.ceil((Math.max(this.cell.time + this.cell.control[2], this.now)) * 1000 + 1e-6) / 1000;
     const waiting = this.setup.events[this.done];
     if (waiting) Object.assign(waiting.set, values);
-    else this.setup.events.push({ at, set: { ...values } });
-    return at;
+    else this.setup.events.push({ at: this._soon(), set: { ...values } });
+    return this.setup.events.at(-1).at;
+  }
+
+  // Touch the edge at a place: "release" or "push".
+  poke(kind, x, y) {
+    const last = this.setup.pokes.at(-1), after = last ? last.at + DATA.pulses[last.kind].duration : 0;
+    const at = Math.max(this._soon(), Math.ceil(after * 1000) / 1000);
+    if (at > this.now + 3) return null; // enough are waiting
+    const poke = { kind, at, x: Math.round(x * 1000) / 1000, y: Math.round(y * 1000) / 1000 };
+    this.setup.pokes.push(poke);
+    return poke;
+  }
+
+  // Ground painted on the way: the run as it is cannot be had from its setup any more.
+  paint(kind, disc) {
+    const discs = this.setup[kind];
+    if (discs.length >= DATA.layout.most_discs) return false;
+    discs.push(disc.map((value) => Math.round(value * 100) / 100));
+    this._ground();
+    return true;
+  }
+
+  wipe() {
+    this.setup.islands.length = this.setup.pillars.length = 0;
+    this._ground();
+  }
+
+  _ground() {
+    if (this.status !== "running") return;
+    this.exact = this.exact && this.now === 0;
+    this.changed = this.now;
+    this.cell.paint(this.setup.islands, this.setup.pillars);
+  }
+
+  _soon() {
+    return Math.ceil(Math.max(this.cell.earliest, this.now) * 1000 + 1e-6) / 1000;
   }
 
   get latest() {
-    const waiting = this.setup.events.slice(this.done);
-    return Object.assign({}, this.parameters, ...waiting.map((event) => event.set));
+    return Object.assign({}, this.parameters, ...this.setup.events.slice(this.done).map((event) => event.set));
   }
 
   // Go on to a time, or as far as the deadline (of performance.now) allows.
   advance(target, deadline = Infinity) {
     while (this.status === "running" && this.now < target) {
-      const record = this.count * EVERY;
-      const next = Math.min(record, target);
-      if (!this._step(next)) break;
+      const record = this.count * EVERY, next = Math.min(record, target);
+      const failed = this._goTo(next);
+      if (failed) {
+        this._end(failed, this.cell.time);
+        break;
+      }
       this.now = next;
       if (next === record) this._record(next);
       if (performance.now() > deadline) break;
@@ -87,37 +129,82 @@ export class Run {
     return this.now;
   }
 
-  _step(next) {
-    while (this.done < this.setup.events.length && this.setup.events[this.done].at <= Math.max(next, this.cell.time)) {
-      const event = this.setup.events[this.done];
-      if (event.at > this.cell.time && this._failed(this.cell.advance(event.at, event.at))) return false;
+  // Let the solver's last step reach a time; returns why it cannot, or "".
+  _goTo(next) {
+    const { cell, setup } = this;
+    for (;;) {
+      const poke = setup.pokes[this.poked], event = setup.events[this.done];
+      if (poke && poke.at - cell.time < 0.11) {
+        cell.pulse({ ...DATA.pulses[poke.kind], x: poke.x, y: poke.y, at: poke.at });
+        this.poked += 1;
+        this.changed = poke.at;
+        continue;
+      }
+      if (cell.time >= next && !(event && event.at <= next)) return "";
+      const stop = Math.min(next, poke ? poke.at - 0.105 : Infinity);
+      if (!event || event.at > stop) {
+        const code = stop > cell.time ? cell.advance(stop, event?.at) : 0;
+        if (code) return ENDS[code] ?? "failed";
+        if (stop < next) continue;
+        return "";
+      }
+      const code = event.at > cell.time ? cell.advance(event.at, event.at) : 0;
+      if (code) return ENDS[code] ?? "failed";
       Object.assign(this.parameters, event.set);
-      this.cell.set(this.parameters);
+      cell.set(this.parameters);
       this.changed = event.at;
       this.done += 1;
     }
-    return !(next > this.cell.time && this._failed(this.cell.advance(next, this.setup.events[this.done]?.at)));
   }
 
-  _failed(code) {
-    if (!code) return false;
-    const names = { 5: "out_of_range", 6: "step_too_small", 7: "unresolved", 100: "out_of_range" };
-    this._end(names[code] ?? "failed");
-    return true;
-  }
-
-  _end(status) {
+  _end(status, time) {
     this.status = status;
+    this.ended = time;
     if (status === "fragmented") this.mode = { mode: "fragmented", confidence: 1, words: "it tore" };
   }
 
   _record(time) {
-    const seen = this.cell.sample(time);
-    if (!seen.simple && this.cell.crosses()) this._end("fragmented");
+    let seen = this.cell.sample(time);
+    if (!seen.simple) {
+      if (this.cell.crosses()) {
+        time = this._traceBack(time);
+        seen = this.cell.sample(time);
+        this.now = time;
+      } else this.valid = { at: time, cell: this.cell.checkpoint(), done: this.done, poked: this.poked, parameters: { ...this.parameters } };
+    }
+    this._keep(time, seen);
+  }
+
+  // Narrow down when the edge first crosses itself, as the package does; ends the run there.
+  _traceBack(crossed) {
+    if (!this.valid || this.valid.at < crossed - 1.5 * EVERY) {
+      this._end("fragmented", crossed);
+      return crossed;
+    }
+    const back = () => {
+      this.cell.restore(this.valid.cell);
+      Object.assign(this, { done: this.valid.done, poked: this.valid.poked, parameters: { ...this.valid.parameters } });
+    };
+    let good = this.valid.at;
+    while (crossed - good > 1e-4) {
+      const middle = 0.5 * (good + crossed);
+      back();
+      const failed = this._goTo(middle), seen = failed ? null : this.cell.sample(middle);
+      if (seen && (seen.simple || !this.cell.crosses())) good = middle;
+      else crossed = middle;
+    }
+    back();
+    this._goTo(good);
+    this._end("fragmented", crossed);
+    return good;
+  }
+
+  _keep(time, seen) {
     const { recent, cell } = this, k = this.count % KEPT, before = (this.count + KEPT - 1) % KEPT;
     for (const name of ["tension", "length", "area", "x", "y"]) recent[name][k] = seen[name];
     recent.t[k] = time;
-    recent.speed[k] = this.count ? Math.hypot(seen.x - recent.x[before], seen.y - recent.y[before]) / EVERY : 0;
+    const passed = this.count ? time - recent.t[before] : 0;
+    recent.speed[k] = passed > 0 ? Math.hypot(seen.x - recent.x[before], seen.y - recent.y[before]) / passed : 0;
     const at = k * 2 * POINTS;
     recent.outline.set(cell.fields.x, at);
     recent.outline.set(cell.fields.y, at + POINTS);
@@ -160,7 +247,7 @@ export class Run {
     const pick = (name) => Float64Array.from(used, (k) => recent[name][k]);
     const areas = pick("area").sort();
     const radius = Math.sqrt(areas[areas.length >> 1] / Math.PI);
-    this.mode = classify(pick("t"), pick("x"), pick("y"), radius);
+    this.mode = classify(pick("t"), pick("x"), pick("y"), radius, this.changed);
     return this.mode;
   }
 

@@ -27,9 +27,6 @@ export class Stage {
     this.showTrack = true;
     this.center = null;
     this.scale = 60;
-    this.islands = [];
-    this.pillars = [];
-    this.poke = null;
   }
 
   toWorld(event) {
@@ -68,10 +65,23 @@ export class Stage {
     context.fillStyle = "#fcfcfb";
     context.fillRect(0, 0, width, height);
     this._dots(context, width, height, X, Y);
-    this._ground(context, width, height, X, Y);
+    this._ground(context, run.setup, X, Y);
     if (this.showTrack) this._track(context, run, seen, X, Y);
     this._cell(context, run.cell.fields, X, Y);
+    this._pokes(context, run.setup.pokes, run.now, X, Y);
     this._scaleBar(context, width, height);
+  }
+
+  _pokes(context, pokes, now, X, Y) {
+    for (const { kind, at, x, y } of pokes) {
+      if (now > at + 0.9 || now < at - 1) continue;
+      const part = Math.max(0, (now - at) / 0.9);
+      context.beginPath();
+      context.arc(X(x), Y(y), this.scale * (kind === "push" ? 0.6 - 0.4 * part : 0.2 + 0.4 * part), 0, 2 * Math.PI);
+      context.strokeStyle = css([213, 94, 0], 0.9 - 0.7 * part);
+      context.lineWidth = 3;
+      context.stroke();
+    }
   }
 
   _dots(context, width, height, X, Y) {
@@ -84,22 +94,22 @@ export class Stage {
         context.fillRect(X(x) - 1, Y(y) - 1, 2, 2);
   }
 
-  _ground(context, width, height, X, Y) {
+  _ground(context, { islands, pillars }, X, Y) {
     const s = this.scale;
-    if (this.islands.length) {
+    if (islands.length) {
       context.save();
       context.beginPath();
-      for (const [x, y, r] of this.islands) {
+      for (const [x, y, r] of islands) {
         context.moveTo(X(x) + r * s, Y(y));
         context.arc(X(x), Y(y), r * s, 0, 2 * Math.PI);
       }
       context.fillStyle = GROUND;
-      context.globalAlpha = 0.42;
+      context.globalAlpha = 0.38;
       context.fill("nonzero");
       context.restore();
     }
     context.fillStyle = WALL;
-    for (const [x, y, r] of this.pillars) {
+    for (const [x, y, r] of pillars) {
       context.beginPath();
       context.arc(X(x), Y(y), r * s, 0, 2 * Math.PI);
       context.fill();
