@@ -7,6 +7,7 @@ import { MODE_COLOURS, MODE_MARKERS } from "./colours.js";
 import { Stage, colourBar } from "./stage.js";
 import { PhaseMap } from "./map.js";
 import { Kymograph, line } from "./strips.js";
+import { Recording } from "./recording.js";
 import { read, write } from "./link.js";
 import { clip, csv, embed, png, python, save } from "./take.js";
 import { thumbnail } from "./thumbnails.js";
@@ -55,7 +56,9 @@ class Page {
 
   load(setup, to = 0) {
     const { place } = this;
-    place.run = new Run(this.module, setup);
+    place.run = DATA.run && !this.left ? new Recording() : new Run(this.module, setup);
+    place.told = undefined;
+    place.element.querySelector(".ended").hidden = true;
     place.stage.center = null;
     place.named = 0;
     this.catchUp = to;
@@ -130,6 +133,7 @@ class Page {
   }
 
   change(values) {
+    if (this.run.recorded) return this.notice("This is a saved run, played back. Choose a cell below or press “Another” to compute one.");
     if (this.run.status !== "running") return;
     this.run.change(values);
     this.sync();
@@ -170,6 +174,7 @@ class Page {
   }
 
   again(setup = this.run.setup) {
+    this.notice("");
     const { islands, pillars } = this.run.setup;
     this.load({ islands, pillars, ...setup, events: setup.events ?? [] });
   }
@@ -183,7 +188,7 @@ class Page {
     $("camera").onchange = (event) => (this.view.camera = event.target.value);
     $("clean").onclick = () => this.wipe();
     $("units").onchange = (event) => { usePhysical(event.target.checked); this.view.units = event.target.checked ? "si" : "none"; this.fresh = true; this.sync(); this.shownPlaces.forEach((place) => this.tell(place)); };
-    $("dice").onclick = () => this.again({ ...this.run.setup, parameters: this.run.latest, seed: this.run.setup.seed + 1, events: [] });
+    $("dice").onclick = () => (this.left = true) && this.again({ ...this.run.setup, parameters: this.run.latest, seed: this.run.setup.seed + 1, events: [] });
     $("seed").onchange = (event) => {
       const text = event.target.value;
       if (/^\d{1,15}$/.test(text)) this.again({ ...this.run.setup, parameters: this.run.latest, seed: Number(text), events: [] });
@@ -313,6 +318,7 @@ class Page {
   }
 
   open(link) {
+    this.left = true;
     const given = read(link);
     for (const name of ["field", "camera"]) if (link.includes(`${name}=`)) this.view[name] = given.view[name];
     this.notice("");
@@ -344,8 +350,8 @@ class Page {
 }
 
 async function begin() {
-  const given = read(location.hash);
-  document.getElementById("version").textContent = DATA.version;
+  const given = read(location.hash || DATA.begin || "");
+  document.getElementById("version").textContent = DATA.version ?? "";
   let module;
   try {
     module = await loadModule();

@@ -21,12 +21,13 @@ export const STATUS = {
   out_of_range: "No bond force balances the pull any more: the edge is too concave for its tension, which the model does not cover.",
   unresolved: "The edge has more detail than the solver can follow at this tolerance.",
   step_too_small: "The solver's step has shrunk to nothing: try another seed or other parameters.",
+  played: "The saved run ends here.",
   failed: "The solver has failed: try another seed or other parameters.",
 };
 
 export class Run {
   constructor(module, setup) {
-    this.cell = new Cell(module, { rtol: setup.rtol ?? 1e-4 });
+    if (module) this.cell = new Cell(module, { rtol: setup.rtol ?? 1e-4 });
     this.begin(setup);
   }
 
@@ -40,6 +41,15 @@ export class Run {
       pillars: [...(setup.pillars ?? [])],
       pokes: (setup.pokes ?? []).map((poke) => ({ ...poke })).sort((a, b) => a.at - b.at),
     };
+    this._clear();
+    const { islands, pillars } = this.setup;
+    if (islands.length || pillars.length) this.cell.paint(islands, pillars);
+    const failed = this.cell.begin(this.parameters, this.setup.seed);
+    if (failed) this._end(failed, 0);
+    else this._record(0);
+  }
+
+  _clear() {
     this.parameters = { ...this.setup.parameters };
     this.status = "running";
     this.ended = 0; // when
@@ -59,11 +69,6 @@ export class Run {
       bound_fraction: new Float32Array(KEPT * RINGS), curvature: new Float32Array(KEPT * RINGS),
     };
     this.mode = { mode: "", confidence: 0, words: "" };
-    const { islands, pillars } = this.setup;
-    if (islands.length || pillars.length) this.cell.paint(islands, pillars);
-    const failed = this.cell.begin(this.parameters, this.setup.seed);
-    if (failed) this._end(failed, 0);
-    else this._record(0);
   }
 
   // Change parameters as soon as can be said in a schedule; returns when.

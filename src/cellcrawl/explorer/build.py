@@ -1,0 +1,19 @@
+"""``python -m cellcrawl.explorer.build``: make the module that the page carries anew."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from cellcrawl.explorer.explore import MODULE
+from cellcrawl.explorer.module import build
+
+
+def main() -> None:
+    """Write the module beside this file."""
+    made = build()
+    Path(__file__).with_name(MODULE).write_bytes(made)
+    print(f"{MODULE}: {len(made)} bytes")
+
+
+if __name__ == "__main__":
+    main()
