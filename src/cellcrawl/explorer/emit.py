@@ -12,7 +12,6 @@ from typing import Any
 
 import numba
 from numba.core import types
-from numba.extending import register_jitable
 
 from cellcrawl.explorer import libm
 from cellcrawl.explorer.entries import Entry, entries
@@ -31,8 +30,6 @@ def text_of(entry: Entry) -> tuple[str, str]:
 def functions_of_the_c_library() -> list[Entry]:
     """Return `libm` as entry points."""
     number = types.float64
-    for place, function in libm.CALLED.items():
-        setattr(libm, place, register_jitable(**_OPTIONS)(function))
     return [
         Entry(f"libm_{name}", function, number(*[number] * count))
         for name, (function, count) in libm.FUNCTIONS.items()
