@@ -21,5 +21,11 @@ def browser() -> Iterator[Any]:
     if chromium() is None:
         pytest.skip("chromium is not on this machine")
     with Browser() as made:
-        made.send("Network.emulateNetworkConditions", offline=True, latency=0, downloadThroughput=0, uploadThroughput=0)
+        made.send(
+            "Network.emulateNetworkConditions",
+            offline=True,
+            latency=0,
+            downloadThroughput=0,
+            uploadThroughput=0,
+        )
         yield made

@@ -4,6 +4,6 @@
 ``python -m cellcrawl.explorer.build``.
 """
 
-from cellcrawl.explorer.explore import Explorer, explore
+from cellcrawl.explorer.show import Explorer, explore
 
 __all__ = ["Explorer", "explore"]

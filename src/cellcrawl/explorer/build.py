@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cellcrawl.explorer.explore import MODULE
 from cellcrawl.explorer.module import build
+from cellcrawl.explorer.show import MODULE
+from cellcrawl.explorer.sources import FILE, digest
 
 
 def main() -> None:
     """Write the module beside this file."""
     made = build()
     Path(__file__).with_name(MODULE).write_bytes(made)
+    Path(__file__).with_name(FILE).write_text(digest() + "\n", "utf-8")
     print(f"{MODULE}: {len(made)} bytes")
 
 

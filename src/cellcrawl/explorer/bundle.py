@@ -51,7 +51,7 @@ def _visit(name: str, order: list[str], on_the_way: tuple[str, ...]) -> None:
 def _wrapped(name: str) -> str:
     """Return a module as a function that is called once and returns what it exports."""
     text = _source(f"{name}.js")
-    text = _IMPORT.sub(lambda found: f"const {{{found[1].replace(' as ', ': ')}}} = ${found[2]};\n", text)
+    text = _IMPORT.sub(r"const {\1} = $\2;\n", text)
     names = [found[1] for found in _EXPORT.findall(text)]
     for found in _LIST.findall(text):
         names += [part.strip() for part in found.split(",") if part.strip()]

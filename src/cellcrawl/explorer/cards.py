@@ -46,9 +46,7 @@ def _direction(run: xr.Dataset) -> float:
 
 
 def _every_seed_its_own_way() -> bool:
-    ways = np.array(
-        [_direction(_run(_GLIDES, 20.0, start=_start(seed))) for seed in (1, 2, 3, 4)]
-    )
+    ways = np.array([_direction(_run(_GLIDES, 20.0, start=_start(seed))) for seed in (1, 2, 3, 4)])
     apart = np.abs(np.angle(np.exp(1j * (ways[:, None] - ways[None, :]))))
     return bool(np.min(apart[np.triu_indices(4, 1)]) > math.radians(5.0))
 
@@ -75,7 +73,9 @@ def _history_counts() -> bool:
     stopped = next(preset for preset in PRESETS if preset.key == "stopped")
     late = _run(stopped.link, stopped.until).sel(time=slice(CHANGES_AT + 5.0, None))
     fresh = _run(_ZIGZAGS, 100.0)
-    return cellcrawl.classify(late).mode == "stationary" and cellcrawl.classify(fresh).mode == "zigzag"
+    return (
+        cellcrawl.classify(late).mode == "stationary" and cellcrawl.classify(fresh).mode == "zigzag"
+    )
 
 
 def _the_poke_turns_it() -> bool:
@@ -102,8 +102,8 @@ CARDS: Final = (
     Card(
         "Who told it where to go?",
         "Press “Another” a few times and watch in which direction the cell sets off.",
-        "Each time in another one. The round cell has no front; chance picks it, and the feedback of "
-        "tension and bonds keeps it.",
+        "Each time in another one. The round cell has no front; chance picks it, and the feedback "
+        "of tension and bonds keeps it.",
         _GLIDES,
         _every_seed_its_own_way,
     ),

@@ -14,9 +14,9 @@ from cellcrawl.explorer.cards import CARDS
 from cellcrawl.explorer.entries import layout
 from cellcrawl.explorer.links import PULSES
 from cellcrawl.explorer.presets import PRESETS
+from cellcrawl.linear import growth_rates, marginal_curves
 from cellcrawl.modes.confidence import FILE
 from cellcrawl.modes.evidence import WORDS, Evidence
-from cellcrawl.linear import growth_rates, marginal_curves
 from cellcrawl.parameters import DESCRIPTIONS, Parameters, Scales
 from cellcrawl.plot.scales import SCALES
 

@@ -17,6 +17,7 @@ from cellcrawl.curve.crossing import crossing_edges
 from cellcrawl.explorer.starting import random_start
 from cellcrawl.laws.law import PAPER
 from cellcrawl.solvers.adaptive import drive
+from cellcrawl.solvers.adaptive.differences import DIFFERENCES
 from cellcrawl.solvers.adaptive.entries import FIELDS, SCALARS
 from cellcrawl.solvers.adaptive.frame import edge_shape, fill_frame
 from cellcrawl.solvers.adaptive.mesh import MESH_ROWS
@@ -47,7 +48,7 @@ _AT_BREAK, _CHECK_NODES, _PAUSED, _RETRY = (
     drive.RETRY,
 )
 _ORDER: Final = drive.ORDER
-_carray: Any = numba.carray
+_carray: Any = getattr(numba, "carray")  # noqa: B009, which its types lack
 
 GROUND: Final = Surroundings(
     [
@@ -82,7 +83,7 @@ def layout() -> dict[str, Any]:
         "work_rows": WORK_ROWS,
         "matrix_rows": MATRIX_ROWS,
         "trace_rows": TRACE_ROWS,
-        "differences": drive.DIFFERENCES,
+        "differences": DIFFERENCES,
         "most_nodes": MOST,
         "time": _TIME,
         "previous_time": drive.PREVIOUS_TIME,
@@ -332,7 +333,8 @@ def _on_the_way(surrounded: bool) -> tuple[Any, Any, Any]:
 def entries() -> list[Entry]:
     """Return all entry points of the module."""
     i32, f64 = types.int32, types.float64
-    floats, ints = types.CPointer(f64), types.CPointer(types.int64)
+    pointer: Any = types.CPointer
+    floats, ints = pointer(f64), pointer(types.int64)
 
     def takes(*given: Any) -> Any:
         return i32(*given)

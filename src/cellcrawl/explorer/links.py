@@ -55,7 +55,10 @@ def read(link: str) -> Linked:
         }
         parameters = Parameters(**given)
         discs = {
-            kind: [[float(v) for v in disc.split(",")] for disc in words.get(kind, "").split(";") if disc]
+            kind: [
+                [float(value) for value in disc.split(",")]
+                for disc in filter(None, words.get(kind, "").split(";"))
+            ]
             for kind in ("islands", "pillars")
         }
         around: list[Surrounding] = []

@@ -113,7 +113,8 @@ def _linked(folder: Path, names: dict[str, str], machine: Any) -> Any:
     text = re.sub(checked, _PRODUCT, text, flags=re.M)
     # calls of the C library by their own names, which LLVM knows nothing about
     library = "|".join(libm.FUNCTIONS)
-    text = re.sub(rf"^declare double @(llvm\.({library})\.f64|({library}))\(.*$", "", text, flags=re.M)
+    declared = rf"^declare double @(llvm\.({library})\.f64|({library}))\(.*$"
+    text = re.sub(declared, "", text, flags=re.M)
     text = re.sub(rf"@(?:llvm\.)?({library})(?:\.f64)?\(", r"@cell_\1(", text)
     kept = {*names, "heap"} - {name for name in names if name.startswith("libm_")}
     whole = llvm.parse_assembly(text)

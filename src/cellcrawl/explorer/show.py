@@ -165,7 +165,7 @@ def _recording(dataset: xr.Dataset) -> dict[str, Any]:
         **{f"centroid_{a}": (center[a] / size("length")).tolist() for a in "xy"},
         **{name: (some[name].values / size(kind)).tolist() for name, kind in _WHOLE.items()},
         "fields": {name: _packed(values) for name, values in arrays.items()},
-        "parameters": decode_attribute(dataset, "parameters") if "parameters" in dataset.attrs else {},
+        "parameters": decode_attribute(dataset, "parameters"),
         "status": str(dataset.attrs.get("status", "completed")),
         "mode": named.mode if named else "",
         "confidence": named.confidence if named else 0.0,
