@@ -35,7 +35,13 @@ def test_a_bad_link_is_one_line(link):
         links.read(link)
 
 
-@pytest.mark.parametrize("preset", presets.OTHERS, ids=lambda preset: preset.key)
+def quick_or_slow(preset: presets.Preset) -> object:
+    """Surroundings are compiled first, which takes most of a minute."""
+    ground = "islands" in preset.link or "pillars" in preset.link
+    return pytest.param(preset, id=preset.key, marks=[pytest.mark.slow] if ground else [])
+
+
+@pytest.mark.parametrize("preset", map(quick_or_slow, presets.OTHERS))
 def test_what_the_page_says_of_a_preset_is_so(preset):
     found = links.read(preset.link)
     run = cc.simulate(found.parameters, t_end=preset.until, **found.options())
