@@ -47,7 +47,10 @@ class Page {
     this.frames = 0;
     this.last = performance.now();
     document.body.classList.remove("loading");
-    requestAnimationFrame((now) => this.frame(now));
+    requestAnimationFrame((now) => {
+      this.frame(now);
+      this.firstPicture = performance.now(); // ms since the page was asked for
+    });
   }
 
   get place() { return this.places[this.active]; }
@@ -72,8 +75,9 @@ class Page {
     this.last = now;
     this.frames += 1;
     if (this.visible) {
-      const deadline = performance.now() + BUDGET;
+      const share = BUDGET / this.shownPlaces.length;
       for (const place of this.shownPlaces) {
+        const deadline = performance.now() + share;
         const { run } = place;
         if (this.catchUp > run.now && run.status === "running") run.advance(this.catchUp, deadline);
         else if (this.playing) run.advance(run.now + passed * this.view.speed, deadline);
@@ -120,7 +124,7 @@ class Page {
     const mode = run.name();
     element.querySelector(".badge svg").innerHTML = symbol(mode.mode);
     element.querySelector(".mode").textContent = WORDS[mode.mode];
-    element.querySelector(".sure").textContent = mode.mode && mode.mode !== "fragmented" ? `${Math.round(100 * mode.confidence)} % sure` : "";
+    element.querySelector(".sure").textContent = mode.mode && mode.mode !== "fragmented" ? mode.confidence > 0.995 ? "over 99 % sure" : `${Math.round(100 * mode.confidence)} % sure` : "";
     const ended = run.status !== "running";
     place.told = run.status;
     element.querySelector(".ended").hidden = !ended;
