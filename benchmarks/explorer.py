@@ -1,7 +1,7 @@
 """Measure the live cell in Chromium: first picture, frames, speed, size, memory.
 
-``python benchmarks/explorer.py [minutes]`` writes ``benchmarks/results/explorer.json``. With minutes,
-a run at full speed that long tells whether memory holds.
+``python benchmarks/explorer.py [minutes]`` writes ``benchmarks/results/explorer.json``. With
+minutes, a run at full speed that long tells whether memory holds.
 """
 
 from __future__ import annotations
@@ -18,8 +18,9 @@ from typing import Any
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
-import cellcrawl as cc  # noqa: E402
 from tests.explorer.browser import Browser, chromium  # noqa: E402
+
+import cellcrawl as cc  # noqa: E402
 
 LINK = "#v=1&r_on=26&zeta_1=600&seed=2"
 FRAMES = """new Promise((done) => {
@@ -30,7 +31,11 @@ FRAMES = """new Promise((done) => {
     if (now - began < 10000) return requestAnimationFrame(step);
     const worst = Math.max(...gaps), rate = 1000 * gaps.length / gaps.reduce((a, b) => a + b);
     const late = gaps.filter((gap) => gap > 50).length;
-    done({frames_per_second: rate, worst_frame_ms: worst, frames_above_50_ms: late, simulated_per_second: (page.run.now - t) / (now - began) * 1000});
+    const simulated = (page.run.now - t) / (now - began) * 1000;
+    done({
+      frames_per_second: rate, worst_frame_ms: worst, frames_above_50_ms: late,
+      simulated_per_second: simulated,
+    });
   };
   requestAnimationFrame(step);
 })"""

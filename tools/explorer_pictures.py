@@ -9,8 +9,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
-import cellcrawl as cc  # noqa: E402
 from tests.explorer.browser import Browser  # noqa: E402
+
+import cellcrawl as cc  # noqa: E402
 
 FOLDER = ROOT / "docs" / "images" / "explore"
 SIZES = {"wide": (1400, 900), "tablet": (820, 1100), "phone": (390, 844)}
