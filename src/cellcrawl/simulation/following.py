@@ -53,31 +53,32 @@ class Follower(Generic[Kept]):
         now = max(self._last_record(), self.law.time) if self.records else -0.5 * _CHECK_EVERY
         valid, age = self._checkpoint(), 0
         while True:
-            target, on_grid = self._next_target(now, t_end)
-            ended = self.solver.advance(target)
+            targets = self._next_targets(now, t_end)
+            instants, ended = self.solver.instants([time for time, _ in targets])
+            commits = False
+            for (target, on_grid), seen in zip(targets, instants, strict=False):
+                looked = self._looked_at(seen)
+                if looked is None:
+                    return self._torn(valid, now, target)
+                broken = self.law.check(looked)
+                if broken is not None:
+                    return broken, None
+                now = target
+                if on_grid:
+                    self.records += 1
+                    self.progress.update(target, looked.tension)
+                    commits = self.recorder.record(self._record_at(target, looked))
             if ended is not None:
                 last = self.solver.time
-                if crossing_at(self.solver, last) is None:
-                    return ended, self._off_grid(max(last, now))
-                target = last
-            seen, crossed = self._look(target)
-            if crossed:
-                found = locate_crossing(self.solver, valid, now, target)
-                return found.breakdown, self._off_grid(found.last_valid)
-            broken = self.law.check(seen)
-            if broken is not None:
-                return broken, None
-            now, age = target, age + 1
-            commits = False
-            if on_grid:
-                self.records += 1
-                self.progress.update(target, seen.tension)
-                commits = self.recorder.record(self._record_at(target, seen))
-            if commits or age == _CHECKS_PER_CHECKPOINT:
+                if crossing_at(self.solver, last) is not None:
+                    return self._torn(valid, now, last)
+                return ended, self._off_grid(max(last, now))
+            age += len(instants)
+            if commits or age >= _CHECKS_PER_CHECKPOINT:
                 valid, age = self._checkpoint(), 0
             if commits:
-                running = Breakdown("running", target, f"has reached t = {target:g}")
-                self.recorder.commit(valid, self._attributes(running, target))
+                running = Breakdown("running", now, f"has reached t = {now:g}")
+                self.recorder.commit(valid, self._attributes(running, now))
             if now >= t_end or same_time(now, t_end):
                 done = Breakdown("completed", t_end, f"reached t_end = {t_end:g}")
                 return done, self._off_grid(now)
@@ -85,13 +86,19 @@ class Follower(Generic[Kept]):
                 message = f"stopped at t = {now:.6g} by {interruption.requested}: can be resumed"
                 return Breakdown("interrupted", now, message), self._off_grid(now)
 
-    def _look(self, time: float) -> tuple[Instant, bool]:
-        """Return the cell, as little of it as will do, and whether its edge crosses itself."""
-        seen = self.solver.instant(time)
+    def _looked_at(self, seen: Instant) -> Instant | None:
+        """Return the cell, as little of it as will do, or None if its edge crosses itself."""
         if seen.surely_simple:
-            return seen, False
-        frame = seen if isinstance(seen, Frame) else self.solver.frame(time)
-        return frame, first_crossing(frame.points) is not None
+            return seen
+        frame = seen if isinstance(seen, Frame) else self.solver.frame(seen.time)
+        return frame if first_crossing(frame.points) is None else None
+
+    def _torn(
+        self, valid: Checkpoint, last_valid: float, crossed: float
+    ) -> tuple[Breakdown, float | None]:
+        """Return how and when a run ends whose edge has crossed itself."""
+        found = locate_crossing(self.solver, valid, last_valid, crossed)
+        return found.breakdown, self._off_grid(found.last_valid)
 
     def _record_at(self, time: float, seen: Instant | None = None) -> Instant:
         """Return what the recorder asks for at ``time``, of which ``seen`` is known."""
@@ -99,16 +106,26 @@ class Follower(Generic[Kept]):
             return seen
         return self.solver.frame(time) if self.recorder.edges else self.solver.instant(time)
 
-    def _next_target(self, now: float, t_end: float) -> tuple[float, bool]:
-        """Return the next time to look at and whether it is on the grid of saved times."""
-        record = self.records * self.save_every
-        check = (math.floor(now / _CHECK_EVERY + _SAME_TIME) + 1) * _CHECK_EVERY
-        check = min(check, self.law.next_look(max(now, 0.0)))
-        on_grid = record <= check or same_time(record, check)
-        target = record if on_grid else check
-        if target > t_end and not same_time(target, t_end):
-            return t_end, False
-        return target, on_grid
+    def _next_targets(self, now: float, t_end: float) -> list[tuple[float, bool]]:
+        """Return the next times to look at and whether they are on the grid of saved times.
+
+        One alone where whole frames are recorded, which must be of the solver's last step.
+        """
+        targets: list[tuple[float, bool]] = []
+        records = self.records
+        while len(targets) < (1 if self.recorder.edges else _CHECKS_PER_CHECKPOINT):
+            record = records * self.save_every
+            check = (math.floor(now / _CHECK_EVERY + _SAME_TIME) + 1) * _CHECK_EVERY
+            check = min(check, self.law.next_look(max(now, 0.0)))
+            on_grid = record <= check or same_time(record, check)
+            now = record if on_grid else check
+            if now > t_end and not same_time(now, t_end):
+                now, on_grid = t_end, False
+            targets.append((now, on_grid))
+            if now >= t_end or same_time(now, t_end):
+                break
+            records += on_grid
+        return targets
 
     def _checkpoint(self) -> Checkpoint:
         return {**self.solver.checkpoint(), KEY: self.law.checkpoint()}

@@ -7,6 +7,7 @@ time, takes a `Frame` of any time in its last step, and can save and restore it 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -17,7 +18,7 @@ from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.starts.base import CellState
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(eq=False, kw_only=True)
 class Instant:
     """The cell as a whole at one instant."""
 
@@ -33,7 +34,7 @@ class Instant:
     """Distance between the ends of the edge as the solver holds it, over its length."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(eq=False, kw_only=True)
 class Frame(Instant):
     """The cell at one instant, on nodes equally spaced in arclength.
 
@@ -122,6 +123,22 @@ class Solver(ABC):
     def instant(self, time: float) -> Instant:
         """Return the cell as a whole at ``time``, with the bits of its `frame`; may be cheaper."""
         return self.frame(time)
+
+    def instants(self, times: Sequence[float]) -> tuple[list[Instant], Breakdown | None]:
+        """Advance to one time after another; return the cell as a whole there, and a breakdown.
+
+        Goes no further than to the first at which it is not sure that the edge is simple, so that
+        a `frame` can be taken and looked at.
+        """
+        seen: list[Instant] = []
+        for time in times:
+            ended = self.advance(time)
+            if ended is not None:
+                return seen, ended
+            seen.append(self.instant(time))
+            if not seen[-1].surely_simple:
+                break
+        return seen, None
 
     @abstractmethod
     def checkpoint(self) -> dict[str, np.ndarray]:

@@ -273,7 +273,7 @@ def choose_step(
         change_step(best, h, control, counters, table)
 
 
-@kernel
+@woven_kernel
 def run(
     laws: Any,
     around: Any,

@@ -15,7 +15,6 @@ from cellcrawl._compile import kernel
 from cellcrawl.curve.fourier import BEFORE, TAPS
 from cellcrawl.laws.functions import friction, off_rate, velocity
 from cellcrawl.physics.force_balance import SOLVED, bond_force, solve_bonds
-from cellcrawl.solvers.adaptive import state as layout
 from cellcrawl.solvers.adaptive.differences import interpolate
 from cellcrawl.solvers.adaptive.entries import FIELDS, LENGTH, ORIGIN_X, ORIGIN_Y, SCALARS, TENSION
 from cellcrawl.solvers.adaptive.mesh import places
@@ -46,7 +45,11 @@ _ROWS: Final = (
     "friction",
 )
 _VELOCITY, _FRICTION = 6, 7
-_CLEARLY = 0.1  # in cell radii: far more than the edge does between two midpoints
+CLEARLY: Final = 0.1  # in cell radii: far more than the edge does between two midpoints
+# what `measure` finds: errors of closure and area before they were mended, relative to length and
+# area, and the least support of the edge seen from the centroid: positive if it cannot cross itself
+_TENSION, _LENGTH, _AREA, _CENTROID_X, _CENTROID_Y, GAP, EXCESS, CLEARANCE = range(8)
+MEASURES: Final = 8
 _GUESSES = 4
 _BLOCK = 32  # places that are found at once
 _SCALES: Final = np.array(
@@ -60,36 +63,32 @@ _SCALES: Final = np.array(
 class Shape(NamedTuple):
     """The edge at one instant on the solver's own nodes, and what is measured on it."""
 
+    time: float
     state: np.ndarray
     work: np.ndarray
     """x and y from node 0, and arclength in mean spacings, at the nodes; curvature at the
     midpoints; all with halos, in rows `X`, `Y`, `PLACE` and `KAPPA`."""
-    instant: Instant
-    mended: tuple[float, float]
-    """Errors of closure and area, relative to the length and the area."""
+    measures: np.ndarray
 
 
-def shape_between(time: float, steps: float, order: int, table: np.ndarray) -> Shape:
-    """Return the edge at ``time``, ``steps`` step sizes after the last state, between -1 and 0.
+def room_for_shape(size: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return arrays that `measure` fills for states of ``size`` entries."""
+    return np.empty(size), np.empty((TRACE_ROWS, (size - SCALARS) // FIELDS))
 
-    ``table`` holds the state and its backward differences. The edge closes and has the area of the
-    tension law to rounding.
-    """
-    state = np.empty(table.shape[1])
-    work = np.empty((TRACE_ROWS, layout.nodes_of(state) + 2 * HALO))
-    area, x, y, gap, excess, clearance = edge_shape(steps, order, table, state, work)
-    scalars = layout.scalars(state).tolist()
-    whole = Instant(
+
+def instant(time: float, measures: np.ndarray) -> Instant:
+    """Return the cell as a whole from what was measured."""
+    tension, length, area, x, y, gap, excess, clearance = measures.tolist()
+    return Instant(
         time=time,
-        tension=scalars[TENSION],
-        length=scalars[LENGTH],
+        tension=tension,
+        length=length,
         area=area,
-        centroid_x=x + scalars[ORIGIN_X],
-        centroid_y=y + scalars[ORIGIN_Y],
-        surely_simple=clearance > _CLEARLY,
+        centroid_x=x,
+        centroid_y=y,
+        surely_simple=clearance > CLEARLY,
         closure_gap=max(gap, excess),
     )
-    return Shape(state, work, whole, (gap, excess))
 
 
 def frame(
@@ -101,19 +100,26 @@ def frame(
     parameters at the nodes, or at one place if they are the same all along the edge.
     """
     out, edge = np.empty((len(_ROWS), nodes)), np.empty((len(profile) + 1, nodes))
-    whole = shape.instant
-    fill_frame(laws, around, whole.time, shape.state, shape.work, log_rate, profile, edge, out)
+    fill_frame(laws, around, shape.time, shape.state, shape.work, log_rate, profile, edge, out)
     fields: dict[str, Any] = dict(zip(_ROWS, out, strict=True))
-    return Frame(**vars(whole), **fields)
+    return Frame(**vars(instant(shape.time, shape.measures)), **fields)
 
 
 @kernel
-def edge_shape(
-    steps: float, order: int, table: np.ndarray, state: np.ndarray, work: np.ndarray
-) -> tuple[float, float, float, float, float, float]:
-    """Area, centroid from node 0, what was amiss with closure and area, least support.
+def measure(
+    steps: float,
+    order: int,
+    table: np.ndarray,
+    state: np.ndarray,
+    work: np.ndarray,
+    measures: np.ndarray,
+    errors: np.ndarray,
+) -> None:
+    """Measure the edge ``steps`` step sizes after the last state, between -1 and 0.
 
-    Fills ``state``, and ``work`` as `Shape` has it. The support is that seen from the centroid.
+    ``table`` holds the state and its backward differences. Fills ``state`` and ``work`` as `Shape`
+    has them: the edge closes and has the area of the tension law to rounding. ``measures`` are
+    named in this module; ``errors`` become the largest of `GAP` and `EXCESS` so far.
     """
     interpolate(steps, order, table, state)
     span = (state.size - SCALARS) // FIELDS
@@ -122,6 +128,8 @@ def edge_shape(
     scalars = state[3 * span :]
     fill_halo(state[span : 2 * span], count)
     gap, excess = project(state, count, work)
+    measures[GAP], measures[EXCESS] = gap, excess
+    errors[0], errors[1] = max(errors[0], gap), max(errors[1], excess)
     tangent(w, count, work)
     _, _, area, center_x, center_y = trace(g, scalars[LENGTH], count, work)
     x, y, cosine, sine = work[X], work[Y], work[COSINE], work[SINE]
@@ -138,7 +146,10 @@ def edge_shape(
         kappa[j] = (turn + difference_ahead(w, j)) * (count / scalars[LENGTH]) / g[j]
     fill_halo(kappa, count)
     places(g, count, work[PLACE])
-    return area, center_x, center_y, gap, excess, least
+    measures[_TENSION], measures[_LENGTH], measures[_AREA] = scalars[TENSION], scalars[LENGTH], area
+    measures[_CENTROID_X] = center_x + scalars[ORIGIN_X]
+    measures[_CENTROID_Y] = center_y + scalars[ORIGIN_Y]
+    measures[CLEARANCE] = least
 
 
 @kernel

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -11,7 +12,15 @@ from cellcrawl.errors import InputError
 from cellcrawl.solvers.adaptive import drive, resolution
 from cellcrawl.solvers.adaptive import state as layout
 from cellcrawl.solvers.adaptive.differences import DIFFERENCES
-from cellcrawl.solvers.adaptive.frame import Shape, frame, shape_between
+from cellcrawl.solvers.adaptive.follow import follow
+from cellcrawl.solvers.adaptive.frame import (
+    MEASURES,
+    Shape,
+    frame,
+    instant,
+    measure,
+    room_for_shape,
+)
 from cellcrawl.solvers.adaptive.mesh import MESH_ROWS
 from cellcrawl.solvers.adaptive.newton import MATRIX_ROWS
 from cellcrawl.solvers.adaptive.place import around
@@ -67,6 +76,7 @@ class AdaptiveSolver(Solver):
         self._placed = place.around(self._compiled_surroundings, rows, self._nodes)
         self._constant: np.ndarray | None = None  # parameters of a run in which none changes
         self._rtol = real_number("rtol", rtol, 1e-10, 1e-2)
+        self._tolerance, self._allowed = _local_tolerance(self._rtol), _grid_tolerance(self._rtol)
         counts = resolution.NODE_COUNTS
         self._max_nodes = whole_number("max_nodes", max_nodes, counts[0], counts[-1])
         self._min_nodes = whole_number("min_nodes", min_nodes, counts[0], self._max_nodes)
@@ -96,23 +106,32 @@ class AdaptiveSolver(Solver):
         return _START_NODES if rtol >= _TIGHT_RTOL else 4 * _START_NODES
 
     def advance(self, target: float) -> Breakdown | None:
+        return self._follow(np.array([target]), np.empty((1, MEASURES)))[1]
+
+    def instants(self, times: Sequence[float]) -> tuple[list[Instant], Breakdown | None]:
+        measures = np.empty((len(times), MEASURES))
+        seen, ended = self._follow(np.array(times), measures)
+        return [instant(times[i], measures[i]) for i in range(seen)], ended
+
+    def _follow(self, times: np.ndarray, measures: np.ndarray) -> tuple[int, Breakdown | None]:
+        """Go on to each of ``times`` and measure the cell there, as far as its edge is simple."""
         self._measured = None
-        tolerance, allowed = _local_tolerance(self._rtol), _grid_tolerance(self._rtol)
         control, counters = self._control, self._counters
-        while control[drive.TIME] < target:
+        seen = 0
+        while True:
             now = self.time
             end = self._conditions.next_break(now)
-            if counters[drive.RESTARTING] and not self._restart():
-                return self._no_root(now)
+            if counters[drive.RESTARTING] and now < times[seen] and not self._restart():
+                return seen, self._no_root(now)
             profile, ramping = self._next_parameters(now, end)
-            code = drive.run(
+            done, code = follow(
                 self._laws,
                 self._around,
-                target,
+                times[seen:],
                 end,
-                tolerance,
+                self._tolerance,
                 _STEPS_PER_CALL,
-                allowed,
+                self._allowed,
                 self._min_nodes,
                 self._max_nodes,
                 control,
@@ -125,17 +144,26 @@ class AdaptiveSolver(Solver):
                 self._mesh,
                 self._matrix,
                 self._work,
+                self._state,
+                self._trace,
+                measures[seen:],
+                self._tally[3:],
             )
+            seen += done
+            if code == drive.REACHED:
+                time = float(times[seen - 1])
+                if time >= control[drive.PREVIOUS_TIME]:
+                    self._measured = Shape(time, self._state, self._trace, measures[seen - 1])
+                return seen, None
             if code == drive.AT_BREAK:
                 counters[drive.RESTARTING] = 1
             elif code == drive.CHECK_NODES:
-                self._fit_grid(allowed)
+                self._fit_grid()
             elif code in (drive.NO_ROOT, drive.STEP_TOO_SMALL, drive.UNRESOLVED):
-                return self._stuck(code)
-        return None
+                return seen, self._stuck(code)
 
     def instant(self, time: float) -> Instant:
-        return self._shape(time).instant
+        return instant(time, self._shape(time).measures)
 
     def frame(self, time: float) -> Frame:
         profile = self._parameters(time, self._nodes)
@@ -144,18 +172,17 @@ class AdaptiveSolver(Solver):
 
     def _shape(self, time: float) -> Shape:
         """Return the edge at ``time``, measured once."""
-        if self._measured is not None and self._measured.instant.time == time:
+        if self._measured is not None and self._measured.time == time:
             return self._measured
-        first, last = self._control[drive.PREVIOUS_TIME], self.time
+        first, last = self._control[drive.PREVIOUS_TIME], self._control[drive.TIME]
         if not first <= time <= last:
             raise ValueError(f"t = {time} is not within the last step, from {first} to {last}")
         steps = (time - last) / self._control[drive.STEP]
-        shape = shape_between(time, steps, int(self._counters[drive.ORDER]), self._table)
-        closure, area = shape.mended
-        self._tally[3] = max(self._tally[3], closure)
-        self._tally[4] = max(self._tally[4], area)
-        self._measured = shape
-        return shape
+        measures = np.empty(MEASURES)
+        order, errors = self._counters[drive.ORDER], self._tally[3:]
+        measure(steps, order, self._table, self._state, self._trace, measures, errors)
+        self._measured = Shape(time, self._state, self._trace, measures)
+        return self._measured
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         return {
@@ -206,7 +233,7 @@ class AdaptiveSolver(Solver):
         curve = start.curve
         density = np.ones(curve.nodes)
         waves = slopes(curve.theta - layout.winding(curve.nodes), start.bound_fraction, density)
-        allowed = resolution.allowance(_grid_tolerance(self._rtol), 0.0, False)
+        allowed = resolution.allowance(self._allowed, 0.0, False)
         if resolution.missed_on(waves, curve.nodes) > 3.0 * allowed:
             raise InputError(
                 f"the start is not resolved on {curve.nodes} nodes at rtol = {self._rtol:g}: "
@@ -239,6 +266,7 @@ class AdaptiveSolver(Solver):
         self._measured = None
         self._table = np.zeros((drive.TABLE_ROWS, layout.size(nodes)))
         self._log_rate = np.zeros(nodes)
+        self._state, self._trace = room_for_shape(layout.size(nodes))
         self._work = np.zeros((WORK_ROWS, nodes + 2 * HALO))
         self._mesh = np.zeros((MESH_ROWS, nodes + 2 * HALO))
         self._matrix = np.zeros((MATRIX_ROWS, nodes))
@@ -254,7 +282,7 @@ class AdaptiveSolver(Solver):
         return drive.restart(
             self._laws,
             self._around,
-            _local_tolerance(self._rtol),
+            self._tolerance,
             self._control,
             self._counters,
             self._table,
@@ -267,7 +295,7 @@ class AdaptiveSolver(Solver):
 
     def _next_parameters(self, now: float, end: float) -> tuple[np.ndarray, bool]:
         """Parameters at the end of the next step, and whether they are moving."""
-        if not self._conditions.varies(now, end):
+        if self._constant is not None or not self._conditions.varies(now, end):
             return self._parameters(now), False
         h = drive.bounded_step(self._control[drive.STEP], now, end)
         if h == end - now:
@@ -292,12 +320,12 @@ class AdaptiveSolver(Solver):
             self._constant = profile
         return profile
 
-    def _fit_grid(self, allowed: float) -> None:
+    def _fit_grid(self) -> None:
         """Go on with as many nodes as the spectrum asks for."""
         control, counters = self._control, self._counters
         table, log_rate = self._table, self._log_rate
         wanted = wanted_nodes(
-            allowed, self._min_nodes, self._max_nodes, control, counters, table, log_rate.size
+            self._allowed, self._min_nodes, self._max_nodes, control, counters, table, log_rate.size
         )
         if wanted == log_rate.size:
             return
