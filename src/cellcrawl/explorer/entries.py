@@ -19,7 +19,7 @@ from cellcrawl.laws.law import PAPER
 from cellcrawl.solvers.adaptive import drive
 from cellcrawl.solvers.adaptive.differences import DIFFERENCES
 from cellcrawl.solvers.adaptive.entries import FIELDS, SCALARS
-from cellcrawl.solvers.adaptive.frame import edge_shape, fill_frame
+from cellcrawl.solvers.adaptive.frame import CLEARLY, MEASURES, fill_frame, measure
 from cellcrawl.solvers.adaptive.mesh import MESH_ROWS
 from cellcrawl.solvers.adaptive.newton import MATRIX_ROWS
 from cellcrawl.solvers.adaptive.place import Around
@@ -85,6 +85,7 @@ def layout() -> dict[str, Any]:
         "trace_rows": TRACE_ROWS,
         "differences": DIFFERENCES,
         "most_nodes": MOST,
+        "clearly": CLEARLY,
         "time": _TIME,
         "previous_time": drive.PREVIOUS_TIME,
         "step": drive.STEP,
@@ -310,10 +311,7 @@ def _on_the_way(surrounded: bool) -> tuple[Any, Any, Any]:
         state = _carray(state_at, (FIELDS * span + SCALARS,))
         trace = _carray(trace_at, (TRACE_ROWS, span))
         whole = _carray(whole_at, (16,))
-        area, x, y, _, _, clearance = edge_shape(steps, order, table, state, trace)
-        for k in range(SCALARS):
-            whole[k] = state[FIELDS * span + k]
-        whole[8], whole[9], whole[10], whole[11] = area, x + whole[3], y + whole[4], clearance
+        measure(steps, order, table, state, trace, whole[:MEASURES], whole[MEASURES:])
         fill_frame(
             law,
             around_edge(data_at, local_at, count),

@@ -153,7 +153,7 @@ export class Cell {
   sample(time) {
     const steps = (time - this.time) / this.control[L.step], w = this.whole;
     this._call(`frame${this._suffix}`, this.nodes, POINTS, time, steps, ...this._places("counters", "table", "y", "profile", "state", "trace", "edgeOut", "out", "whole", "data", "localOut"));
-    return { time, length: w[0], tension: w[1], area: w[8], x: w[9], y: w[10], simple: w[11] > 0.1 };
+    return { time, tension: w[0], length: w[1], area: w[2], x: w[3], y: w[4], simple: w[7] > L.clearly };
   }
 
   crosses() {
