@@ -50,6 +50,9 @@ class Page {
     requestAnimationFrame((now) => {
       this.frame(now);
       this.firstPicture = performance.now(); // ms since the page was asked for
+      this.shelf();
+      this.cards();
+      this.sync();
     });
   }
 
@@ -200,6 +203,7 @@ class Page {
     };
     all("[data-do=another]").forEach((button) => (button.onclick = () => { this.active = this.places.findIndex((place) => place.element.contains(button)); $("dice").onclick(); }));
     $("pair").onchange = (event) => this.pair(event.target.checked);
+    this.legend();
     this.parameters();
     all("[data-tool]").forEach((button) => (button.onclick = () => { this.tool = button.dataset.tool; all("[data-tool]").forEach((other) => other.setAttribute("aria-pressed", String(other === button))); }));
     this.places.forEach((place, k) => this.hand(place, k));
@@ -208,8 +212,10 @@ class Page {
     document.addEventListener("visibilitychange", () => { this.visible = !document.hidden && this.inSight !== false; this.last = performance.now(); });
     window.addEventListener("resize", () => (this.fresh = true));
     window.addEventListener("hashchange", () => { const given = read(location.hash); this.view = { ...given.view, view: this.view.view }; usePhysical(given.view.units === "si"); this.notice(given.complaints.length ? `Not all of this link could be read: ${given.complaints.slice(0, 4).join("; ")}.` : ""); this.load(given.setup, given.view.to); });
-    this.shelf();
-    this.cards();
+  }
+
+  legend() {
+    $("legend").innerHTML = ["gliding", "rotational", "zigzag", "other", "stationary", "fragmented"].filter((mode) => DATA.map.modes.some((row) => row[2] === mode)).map((mode) => `<span><svg viewBox="-12 -12 24 24" aria-hidden="true">${symbol(mode)}</svg>${WORDS[mode]}</span>`).join("") + "<span>shade: how fast the round cell breaks its symmetry; left and right of the dashed lines it does not</span>";
   }
 
   parameters() {
@@ -307,7 +313,6 @@ class Page {
       $("shelf").append(button);
       requestAnimationFrame(() => thumbnail(button.querySelector("canvas"), preset));
     }
-    $("legend").innerHTML = ["gliding", "rotational", "zigzag", "other", "stationary", "fragmented"].filter((mode) => DATA.map.modes.some((row) => row[2] === mode)).map((mode) => `<span><svg viewBox="-12 -12 24 24" aria-hidden="true">${symbol(mode)}</svg>${WORDS[mode]}</span>`).join("") + "<span>shade: how fast the round cell breaks its symmetry; left and right of the dashed lines it does not</span>";
   }
 
   cards() {
