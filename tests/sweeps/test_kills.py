@@ -158,7 +158,7 @@ except cc.StorageError as error:
 """
 
 
-@pytest.mark.parametrize(("keep", "limit"), [("rows", 5000), ("fields", 200_000)])
+@pytest.mark.parametrize(("keep", "limit"), [("rows", 5000), ("fields", 20_000)])
 def test_a_full_disk_stops_the_sweep_with_a_line_and_keeps_the_rows(tmp_path, keep, limit):
     pytest.importorskip("resource")
     output = tmp_path / "out"
