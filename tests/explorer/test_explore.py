@@ -41,7 +41,7 @@ def quick_or_slow(preset: presets.Preset) -> object:
     return pytest.param(preset, id=preset.key, marks=[pytest.mark.slow] if ground else [])
 
 
-@pytest.mark.parametrize("preset", map(quick_or_slow, presets.OTHERS))
+@pytest.mark.parametrize("preset", [quick_or_slow(preset) for preset in presets.OTHERS])
 def test_what_the_page_says_of_a_preset_is_so(preset):
     found = links.read(preset.link)
     run = cc.simulate(found.parameters, t_end=preset.until, **found.options())
