@@ -1,6 +1,9 @@
 """Sphinx configuration; `sphinx-build -W docs docs/_build/html` builds the site."""
 
 from importlib.metadata import version as installed_version
+from pathlib import Path
+
+import cellcrawl
 
 project = "cellcrawl"
 author = "The cellcrawl developers"
@@ -18,7 +21,7 @@ extensions = [
 ]
 myst_enable_extensions = ["colon_fence", "dollarmath", "attrs_block", "attrs_inline"]
 myst_heading_anchors = 3
-exclude_patterns = ["_build"]
+exclude_patterns = ["_build", "_live"]
 numpydoc_show_class_members = False
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
@@ -29,3 +32,9 @@ html_theme = "furo"
 html_title = "cellcrawl"
 html_static_path: list[str] = []
 html_show_sourcelink = False
+
+# The live cell lies beside the pages, which hold it in frames
+_live = Path(__file__).with_name("_live")
+_live.mkdir(exist_ok=True)
+cellcrawl.explore(view="full").save(_live / "cell.html")
+html_extra_path = ["_live"]

@@ -158,6 +158,8 @@ def _calls(folder: Path) -> Iterator[Call]:
     yield call(cc.surroundings.Stripes, period=2.0, width=0.5, between=0.0, angle=0.0)
     yield call(cc.surroundings.Pattern, image=np.ones((3, 3)), pixel=0.5, parameter="r_on", x=0.0)
     yield call(cc.surroundings.Walls, corners=square, room=True, stiffness=1e4)
+    yield call(cc.surroundings.Islands, discs=[[0.0, 0.0, 1.0]], outside=0.5)
+    yield call(cc.surroundings.Pillars, discs=[[3.0, 0.0, 1.0]], stiffness=1e4)
     yield call(cc.surroundings.Gradient, parameter="r_on", x=1.0, least=0.0)
     yield call(cc.surroundings.TensionGradient, mu=100.0)
     yield call(cc.surroundings.AlongEdge, parameter="v_p", front=0.1, bend=-0.1, slow=0.02)

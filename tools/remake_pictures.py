@@ -107,6 +107,11 @@ def modes(work: Path) -> None:
         copy(RESULTS / f"{name}.png", IMAGES / f"{name}.png")
 
 
+def explorer(work: Path) -> None:
+    """The page of the live cell at three widths."""
+    command("tools/explorer_pictures.py")
+
+
 def tracks(work: Path) -> None:
     """The sheet of the tutorial."""
     sheet = IMAGES / "trackmate-sheet.png"
@@ -139,6 +144,7 @@ def benchmarks(work: Path) -> None:
 
 
 STEPS = (
+    Step("explorer", ("docs/images/explore/*.png",), explorer),
     Step("linear", ("docs/images/linear/*.png",), linear),
     Step(
         "benchmarks", ("benchmarks/results/[isw]*.png", "docs/images/performance/*.png"), benchmarks

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from cellcrawl.errors import CellcrawlError as CellcrawlError
     from cellcrawl.errors import InputError as InputError
     from cellcrawl.errors import StorageError as StorageError
+    from cellcrawl.explorer import explore as explore
     from cellcrawl.microscopy import observe as observe
     from cellcrawl.microscopy import read_outlines as read_outlines
     from cellcrawl.microscopy import read_tracks as read_tracks
@@ -70,6 +71,7 @@ _HOMES = {
     "Schedule": "parameters",
     "StorageError": "errors",
     "classify": "modes",
+    "explore": "explorer",
     "classify_track": "modes",
     "Sweep": "sweeps",
     "movie": "movies",

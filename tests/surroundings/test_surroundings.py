@@ -15,7 +15,10 @@ from cellcrawl.surroundings import (
     ElectricField,
     Gradient,
     Island,
+    Islands,
+    LocalPulse,
     Pattern,
+    Pillars,
     Place,
     Stripes,
     Surroundings,
@@ -36,6 +39,9 @@ ALL = [
     ElectricField(y=2.0),
     Channel(width=2.2),
     Walls(SQUARE, room=True),
+    Islands([[0.0, 0.0, 1.0], [1.0, 0.5, 2.0]]),
+    Pillars([[3.0, 0.0, 1.0]]),
+    LocalPulse(x=1.0, begin=-0.1, duration=0.2, binding=0.5, push=10.0),
 ]
 
 
@@ -73,6 +79,37 @@ def test_an_island_is_a_disc():
     island = Island(radius=1.5, x=1.0, y=-1.0, outside=0.0, edge=0.05)
     values = [island.change(at(1.0 + r, -1.0), Local)["r_on"] / 26.0 for r in (0.0, 1.5, 3.0)]
     assert values == pytest.approx([1.0, 0.5, 0.0], abs=1e-9)
+
+
+def test_discs_are_one_ground_where_they_overlap():
+    islands = Islands([[0.0, 0.0, 1.0], [1.5, 0.0, 1.0]], outside=0.2, edge=0.05)
+    inside, between, outside = (
+        islands.change(at(x, 0.0), Local)["r_on"] / 26.0 for x in (0.0, 0.75, 4.0)
+    )
+    assert (inside, between) == (pytest.approx(1.0), pytest.approx(1.0, abs=1e-4))
+    assert outside == pytest.approx(0.2)
+    one = Island(radius=1.0, outside=0.2, edge=0.05)
+    alone = Islands([[0.0, 0.0, 1.0]], outside=0.2, edge=0.05)
+    for x in (0.3, 0.99, 1.0, 1.2):
+        same = one.change(at(x, 0.0), Local)["r_on"]
+        assert alone.change(at(x, 0.0), Local)["r_on"] == pytest.approx(same, rel=1e-9)
+
+
+def test_a_pillar_pushes_as_deep_as_the_edge_is_in_it():
+    pillars = Pillars([[3.0, 0.0, 1.0], [3.0, 1.0, 1.0]], stiffness=100.0)
+    pushed = [pillars.change(at(x, 0.0), Local)["pressure"] for x in (1.0, 2.0, 2.4, 3.0)]
+    assert pushed == pytest.approx([0.0, 0.0, 40.0, 100.0])
+
+
+def test_a_pulse_is_nothing_before_and_after_and_at_its_height_what_it_says():
+    pulse = LocalPulse(x=1.0, y=0.0, radius=0.5, begin=2.0, duration=1.0, binding=0.25, push=8.0)
+    for time, strength in ((1.9, 0.0), (2.0, 0.0), (2.5, 1.0), (3.0, 0.0), (9.0, 0.0)):
+        place = Place(x=1.0, y=0.0, time=time, normal_x=1.0, normal_y=0.0)
+        found = pulse.change(place, Local)
+        assert found["r_on"] == 26.0 * (1.0 - 0.75 * strength)
+        assert found["pressure"] == 8.0 * strength
+    aside = Place(x=1.5, y=0.0, time=2.5, normal_x=1.0, normal_y=0.0)
+    assert pulse.change(aside, Local)["pressure"] == pytest.approx(8.0 / math.e)
 
 
 def test_fields_and_forces_go_with_the_normal():

@@ -32,6 +32,7 @@ _COMMANDS: Final[dict[str, tuple[str, str]]] = {
     "tracks": ("tracks", "Draw a sheet about tracks: modes, headings, displacements."),
     "plot": ("draw", "Draw a saved run, or the tracks of a table."),
     "movie": ("draw", "Film a saved run."),
+    "explore": ("explore", "Open the live cell: the solver at work in your browser."),
     "info": ("info", "Say what a file holds."),
     "verify": ("verify", "Verify the package and the paper's claims."),
     "bench": ("bench", "Measure accuracy and speed on this machine."),

@@ -16,6 +16,7 @@ from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.laws.law import described
 from cellcrawl.surroundings.base import Place, Surrounding, Surroundings
+from cellcrawl.surroundings.discs import Islands, LocalPulse, Pillars
 from cellcrawl.surroundings.fields import (
     AlongEdge,
     ElectricField,
@@ -38,6 +39,9 @@ SHIPPED: Final[dict[str, type[Any]]] = {
     "along-edge": AlongEdge,
     "channel": Channel,
     "walls": Walls,
+    "islands": Islands,
+    "pillars": Pillars,
+    "pulse": LocalPulse,
 }
 """Surroundings by the names that tables of TOML files take."""
 
@@ -48,7 +52,10 @@ __all__ = [
     "ElectricField",
     "Gradient",
     "Island",
+    "Islands",
+    "LocalPulse",
     "Pattern",
+    "Pillars",
     "Place",
     "Stripes",
     "Surrounding",

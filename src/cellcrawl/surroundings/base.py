@@ -13,10 +13,11 @@ from cellcrawl.errors import InputError
 from cellcrawl.laws.expressions import Expression, body, call, number, symbol, symbols_of
 from cellcrawl.laws.functions import Compiled, register
 from cellcrawl.laws.law import Described, Law
-from cellcrawl.surroundings.lookup import angle_from_front, image_value, polygon_depth
+from cellcrawl.surroundings.lookup import angle_from_front, disc_depth, image_value, polygon_depth
 from cellcrawl.validation import shown
 
 _LOOKUPS: Final[dict[str, Any]] = {
+    "disc_depth": disc_depth,
     "image_value": image_value,
     "polygon_depth": polygon_depth,
     "angle_from_front": angle_from_front,

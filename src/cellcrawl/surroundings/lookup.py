@@ -70,3 +70,21 @@ def angle_from_front(velocity_x: float, velocity_y: float, arm_x: float, arm_y: 
     """Angle from the velocity to an arm, positive to the left."""
     ahead = velocity_x * arm_x + velocity_y * arm_y
     return math.atan2(velocity_x * arm_y - velocity_y * arm_x, ahead)
+
+
+@kernel
+def disc_depth(data: np.ndarray, table: float, x: float, y: float) -> float:
+    """How deep a place is inside the nearest of some discs: distance to its rim, below 0 outside.
+
+    The table holds the number of discs, and x, y and radius of each in turn.
+    """
+    k = int(table)
+    depth = -math.inf
+    for disc in range(int(data[k])):
+        dx, dy = x - data[k + 1 + 3 * disc], y - data[k + 2 + 3 * disc]
+        radius = data[k + 3 + 3 * disc]
+        reach = radius - depth
+        square = dx * dx + dy * dy
+        if square < reach * reach:
+            depth = radius - math.sqrt(square)
+    return depth

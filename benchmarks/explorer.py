@@ -1,0 +1,104 @@
+"""Measure the live cell in Chromium: first picture, frames, speed, size, memory.
+
+``python benchmarks/explorer.py [minutes]`` writes ``benchmarks/results/explorer.json``. With
+minutes, a run at full speed that long tells whether memory holds.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import platform
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT))
+
+from tests.explorer.browser import Browser, chromium  # noqa: E402
+
+import cellcrawl as cc  # noqa: E402
+
+LINK = "#v=1&r_on=26&zeta_1=600&seed=2"
+FRAMES = """new Promise((done) => {
+  const gaps = []; let before = 0; const began = performance.now(), t = page.run.now;
+  const step = (now) => {
+    if (before) gaps.push(now - before);
+    before = now;
+    if (now - began < 10000) return requestAnimationFrame(step);
+    const worst = Math.max(...gaps), rate = 1000 * gaps.length / gaps.reduce((a, b) => a + b);
+    const late = gaps.filter((gap) => gap > 50).length;
+    const simulated = (page.run.now - t) / (now - began) * 1000;
+    done({
+      frames_per_second: rate, worst_frame_ms: worst, frames_above_50_ms: late,
+      simulated_per_second: simulated,
+    });
+  };
+  requestAnimationFrame(step);
+})"""
+SPEED = """(() => {
+  const found = [];
+  for (let k = 0; k < 4; k++) {
+    page.run.cell.begin(page.run.setup.parameters, 2);
+    const began = performance.now();
+    page.run.cell.advance(100);
+    found.push(100000 / (performance.now() - began));
+  }
+  return found;
+})()"""
+
+
+def measure(minutes: float) -> dict[str, Any]:
+    """Return all numbers."""
+    page = cc.explore(view="full").save(Path(tempfile.mkdtemp()) / "cell.html")
+    found: dict[str, Any] = {
+        "machine": platform.machine(),
+        "page_bytes": page.stat().st_size,
+        "page_bytes_compressed": len(gzip.compress(page.read_bytes(), 9)),
+    }
+    cold = []
+    for _ in range(3):
+        with Browser() as browser:
+            browser.open(page.as_uri() + LINK)
+            browser.wait("window.page && page.frames > 1")
+            cold.append(browser.value("page.firstPicture"))
+    found["first_picture_ms"] = cold
+    with Browser() as browser:
+        browser.open(page.as_uri() + LINK)
+        browser.wait("window.page && page.run.now > 10")
+        found["crawling"] = browser.value(FRAMES)
+        found["time_units_per_second"] = browser.value(f"page.playing = false, {SPEED}")
+        found["version"] = browser.send("Browser.getVersion")["product"]
+        if minutes:
+            found["memory"] = _memory(browser, minutes)
+        found["errors"] = browser.errors
+    return found
+
+
+def _memory(browser: Browser, minutes: float) -> dict[str, Any]:
+    """Let a cell run at full speed and look at the memory of the page now and then."""
+    browser.value("page.open('v=1&r_on=26&zeta_1=600&seed=2'), page.view.speed = 1000, 0")
+    sizes = []
+    end = time.monotonic() + 60.0 * minutes
+    while time.monotonic() < end:
+        time.sleep(60.0 * minutes / 12)
+        browser.send("HeapProfiler.collectGarbage")
+        sizes.append(browser.send("Runtime.getHeapUsage")["usedSize"] / 2**20)
+    return {"minutes": minutes, "simulated": browser.value("page.run.now"), "heap_MiB": sizes}
+
+
+def main() -> None:
+    """Measure and keep."""
+    if chromium() is None:
+        sys.exit("chromium is not on this machine")
+    found = measure(float(sys.argv[1]) if len(sys.argv) > 1 else 0.0)
+    text = json.dumps(found, indent=1)
+    (ROOT / "benchmarks" / "results" / "explorer.json").write_text(text + "\n", "utf-8")
+    print(text)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,85 @@
+// What can be taken home: code, pictures, numbers, a clip.
+
+import { POINTS } from "./cell.js";
+import { PARAMETERS } from "./run.js";
+
+const LONGEST_CLIP = 60; // seconds
+const plain = (value) => (Number.isInteger(value) ? `${value}.0` : String(value));
+
+export function save(blob, name) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 5000);
+}
+
+// The changes of a run as the package's Schedule has them: jumps at times.
+export function schedule(setup) {
+  const points = {};
+  const now = { ...setup.parameters };
+  for (const event of setup.events)
+    for (const [name, value] of Object.entries(event.set)) {
+      (points[name] ??= []).push([event.at, now[name]], [event.at, value]);
+      now[name] = value;
+    }
+  return points;
+}
+
+export function python(run) {
+  const { setup } = run;
+  const given = Object.entries(setup.parameters).filter(([name, value]) => value !== PARAMETERS[name] || name === "r_on" || name === "zeta_1");
+  const lines = [
+    "import cellcrawl as cc", "",
+    `p = cc.Parameters(${given.map(([name, value]) => `${name}=${typeof value === "string" ? `"${value}"` : value}`).join(", ")})`,
+    `options = {"start": cc.RandomPerturbation(seed=${setup.seed})}`,
+  ];
+  const points = Object.entries(schedule(setup));
+  if (points.length) lines.push(`options["schedule"] = cc.Schedule({`, ...points.map(([name, list]) => `    "${name}": [${list.map(([t, v]) => `(${plain(t)}, ${plain(v)})`).join(", ")}],`), "})");
+  if (setup.rtol !== 1e-4) lines.push(`options["rtol"] = ${setup.rtol}`);
+  lines.push(`run = cc.simulate(p, t_end=${plain(Math.max(1, Math.round(run.now * 10) / 10))}, **options)`, "print(cc.classify(run).mode)", 'cc.movie(run, "cell.mp4")');
+  return lines.join("\n") + "\n";
+}
+
+export function embed(address, fragment, level) {
+  const height = { full: 1500, small: 420, bare: 320 }[level];
+  return `<iframe src="${address}${fragment.replaceAll("&", "&amp;")}" title="A crawling cell, computed live by cellcrawl" width="100%" height="${height}" style="border:0" loading="lazy" allow="clipboard-write"></iframe>\n`;
+}
+
+export function csv(run) {
+  const { recent } = run;
+  const lines = ["time,point,x,y"];
+  for (const k of run.indices(200))
+    for (let i = 0; i < POINTS; i++) {
+      const at = k * 2 * POINTS + i;
+      lines.push(`${recent.t[k].toFixed(4)},${i},${recent.outline[at].toFixed(5)},${recent.outline[at + POINTS].toFixed(5)}`);
+    }
+  return lines.join("\n") + "\n";
+}
+
+export function png(place, run, then) {
+  place.canvas.toBlob((blob) => then(blob, `cell-t${run.now.toFixed(1)}.png`), "image/png");
+}
+
+let recorder = null;
+
+export function clip(canvas, button, notice) {
+  if (recorder) return recorder.stop();
+  if (!canvas.captureStream || typeof MediaRecorder === "undefined") return notice("This browser cannot record a clip of a canvas.");
+  const type = ["video/mp4;codecs=avc1", "video/webm;codecs=vp9", "video/webm"].find((name) => MediaRecorder.isTypeSupported(name));
+  if (!type) return notice("This browser cannot record a clip.");
+  const parts = [], kept = button.textContent;
+  recorder = new MediaRecorder(canvas.captureStream(50), { mimeType: type, videoBitsPerSecond: 8e6 });
+  recorder.ondataavailable = (event) => event.data.size && parts.push(event.data);
+  const began = performance.now();
+  const ticking = setInterval(() => (button.textContent = `Stop (${Math.floor((performance.now() - began) / 1000)} s)`), 250);
+  const limit = setTimeout(() => recorder?.stop(), LONGEST_CLIP * 1000);
+  recorder.onstop = () => {
+    clearInterval(ticking);
+    clearTimeout(limit);
+    button.textContent = kept;
+    save(new Blob(parts, { type }), `cell.${type.includes("mp4") ? "mp4" : "webm"}`);
+    recorder = null;
+  };
+  recorder.start(1000);
+}

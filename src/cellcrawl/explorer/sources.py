@@ -1,0 +1,57 @@
+"""Whether the shipped module is that of the kernels as they are: a hash of their code."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import tokenize
+from pathlib import Path
+from typing import Final
+
+FILE: Final = "solver.sha256"
+_PLACES: Final = (
+    "_elementary.py",
+    "curve/crossing.py",
+    "curve/fourier.py",
+    "curve/orientation.py",
+    "curve/sines.py",
+    "explorer/emit.py",
+    "explorer/entries.py",
+    "explorer/libm.py",
+    "explorer/module.py",
+    "explorer/object_file.py",
+    "explorer/runtime.py",
+    "explorer/starting.py",
+    "laws/compiled.py",
+    "laws/functions.py",
+    "laws/law.py",
+    "physics/exponential.py",
+    "physics/force_balance.py",
+    "solvers/cyclic.py",
+    "surroundings/discs.py",
+    "surroundings/lookup.py",
+    "surroundings/place.py",
+)
+_ADAPTIVE: Final = "solvers/adaptive"
+_NOT_KERNELS: Final = ("__init__.py", "solver.py", "state.py")
+_SKIPPED: Final = {
+    *("COMMENT", "NL", "NEWLINE", "INDENT", "DEDENT", "ENCODING", "ENDMARKER"),
+    *("STRING", "FSTRING_START", "FSTRING_MIDDLE", "FSTRING_END"),
+}
+
+
+def digest() -> str:
+    """Return a hash of the code that the module is built from, comments and texts left out."""
+    root = Path(__file__).parent.parent
+    found = [root / place for place in _PLACES]
+    found += [
+        file for file in sorted((root / _ADAPTIVE).glob("*.py")) if file.name not in _NOT_KERNELS
+    ]
+    whole = hashlib.sha256()
+    for file in found:
+        whole.update(file.name.encode())
+        tokens = tokenize.generate_tokens(io.StringIO(file.read_text("utf-8")).readline)
+        for token in tokens:
+            if tokenize.tok_name[token.type] not in _SKIPPED:
+                whole.update(token.string.encode() + b" ")
+    return whole.hexdigest()

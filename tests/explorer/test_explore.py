@@ -1,0 +1,84 @@
+from __future__ import annotations
+
+import gzip
+
+import pytest
+
+import cellcrawl as cc
+from cellcrawl.command_line.main import run as command
+from cellcrawl.explorer import cards, links, presets
+from tests.explorer.browser import Browser, chromium
+
+
+def test_the_whole_page_is_small(page):
+    assert len(gzip.compress(page.read_bytes(), 9)) < 300_000
+
+
+def test_the_page_asks_the_network_for_nothing(page):
+    text = page.read_text("utf-8")
+    assert "fetch(" not in text
+    assert "<script src" not in text
+    assert "<link" not in text
+
+
+def test_a_link_read_and_written_is_the_same_cell():
+    p = cc.Parameters(r_on=30.5, zeta_1=570, D=0.1, elasticity="consistent")
+    found = links.read("#" + links.write(p, 7))
+    assert (found.parameters, found.seed, found.schedule) == (p, 7, None)
+
+
+@pytest.mark.parametrize(
+    "link", ["v=2&r_on=3", "r_on=x", "r_on=1e9", "islands=1,2", "pokes=kick,1,2,3", "changes=1,q:2"]
+)
+def test_a_bad_link_is_one_line(link):
+    with pytest.raises(cc.InputError):
+        links.read(link)
+
+
+def quick_or_slow(preset: presets.Preset) -> object:
+    """Surroundings are compiled first, which takes most of a minute."""
+    ground = "islands" in preset.link or "pillars" in preset.link
+    return pytest.param(preset, id=preset.key, marks=[pytest.mark.slow] if ground else [])
+
+
+@pytest.mark.parametrize("preset", [quick_or_slow(preset) for preset in presets.OTHERS])
+def test_what_the_page_says_of_a_preset_is_so(preset):
+    found = links.read(preset.link)
+    run = cc.simulate(found.parameters, t_end=preset.until, **found.options())
+    if found.schedule is not None:
+        run = run.sel(time=slice(presets.CHANGES_AT + 5.0, None))
+    if preset.mode:
+        assert cc.classify(run).mode == preset.mode
+
+
+@pytest.mark.parametrize("card", cards.CARDS, ids=lambda card: card.title)
+def test_the_expected_outcome_of_a_card_comes(card):
+    links.read(card.link)
+    assert card.check()
+
+
+def test_the_command_writes_the_page(tmp_path, capsys):
+    assert command(["explore", "--r-on", "24", "--output", str(tmp_path / "cell.html")]) == 0
+    assert "r_on=24" in (tmp_path / "cell.html").read_text("utf-8")
+    assert command(["explore", "--view", "huge"]) == 2
+
+
+def test_a_notebook_shows_the_page():
+    assert cc.explore(view="bare")._repr_html_().startswith("<iframe srcdoc=")
+    with pytest.raises(cc.InputError):
+        cc.explore(3)
+
+
+@pytest.mark.skipif(chromium() is None, reason="chromium is not on this machine")
+def test_a_saved_run_is_played_back(tmp_path):
+    p = cc.Parameters(r_on=26, zeta_1=600)
+    run = cc.simulate(p, t_end=4.0, start=cc.RandomPerturbation(seed=2))
+    place = cc.explore(run, view="full").save(tmp_path / "run.html")
+    with Browser() as browser:
+        browser.open(place)
+        browser.wait("window.page && page.run.now > 0.5")
+        browser.value("page.run.advance(4)")
+        assert browser.value("page.run.seen.tension") == pytest.approx(float(run["tension"][-1]))
+        x = browser.value("[...page.run.cell.fields.x]")
+        assert x == pytest.approx(run["x"].values[-1].tolist(), abs=2e-4)
+        assert browser.errors == []

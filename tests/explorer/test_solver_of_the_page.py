@@ -1,0 +1,107 @@
+"""The shipped module in node, against the package in Python."""
+
+from __future__ import annotations
+
+from importlib import resources
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cellcrawl as cc
+from cellcrawl.explorer import links, sources
+from cellcrawl.explorer.content import content
+from cellcrawl.explorer.object_file import imports
+from cellcrawl.explorer.show import MODULE, shipped_module
+from cellcrawl.explorer.starting import random_start
+from tests.explorer import node
+
+CODE = """
+const module = new WebAssembly.Module(fs.readFileSync(given.module));
+return given.runs.map(({link, times}) => {
+  const {setup} = $link.read(link);
+  const run = new $run.Run(module, setup);
+  const seen = times.map((time) => {
+    run.advance(time);
+    return {...run.sample(), nodes: run.cell.nodes, steps: run.cell.steps};
+  });
+  return {seen, status: run.status, ended: run.ended, draw: [...$random.uniform(setup.seed, 8)]};
+});
+"""
+LINKS = {
+    "zigzag": "v=1&r_on=26&zeta_1=600&seed=2",
+    "rotation": "v=1&r_on=24&zeta_1=540&seed=12345678901",
+    "changed": "v=1&r_on=16&zeta_1=600&seed=2&changes=1,r_on:26,D:0.1;3,zeta_1:560",
+    "consistent": "v=1&r_on=26&zeta_1=600&seed=3&elasticity=consistent",
+}
+GROUND = (
+    "v=1&r_on=26&zeta_1=600&seed=1&islands=0,0,3;1,1,1&pillars=2.2,0,0.5"
+    "&pokes=push,2,0.9,0;release,3,0,0.9"
+)
+TIMES = [0.0, 0.5, 2.0, 5.0]
+
+
+def in_node(runs: list[dict], folder: Path, module: Path | None = None) -> list[dict]:
+    place = module or Path(str(resources.files("cellcrawl.explorer").joinpath(MODULE)))
+    return node.run("link", content(), CODE, {"module": str(place), "runs": runs}, folder)
+
+
+@pytest.mark.parametrize(
+    "some", [[*LINKS.values()], pytest.param([GROUND], marks=pytest.mark.slow)], ids=["", "ground"]
+)
+@node.needs_node
+def test_the_module_computes_what_python_does(tmp_path, some):
+    found = in_node([{"link": link, "times": TIMES} for link in some], tmp_path)
+    for link, got in zip(some, found, strict=True):
+        asked = links.read(link)
+        draw = np.random.default_rng(asked.seed).uniform(-1.0, 1.0, 8)
+        assert got["draw"] == draw.tolist()
+        run = cc.simulate(asked.parameters, t_end=TIMES[-1], **asked.options())
+        for seen in got["seen"]:
+            known = run.sel(time=seen["time"], method="nearest")
+            bound = 1e-9 if seen["time"] <= 2.0 else 1e-6  # chaotic growth of rounding
+            for name in ("length", "tension", "area"):
+                assert seen[name] == pytest.approx(float(known[name]), rel=bound), (link, name)
+            for axis in "xy":
+                assert seen[axis] == pytest.approx(float(known[f"centroid_{axis}"]), abs=bound)
+
+
+@node.needs_node
+def test_a_run_leaves_the_model_as_it_does_in_python(tmp_path):
+    link = "v=1&r_on=16&zeta_1=600&seed=9"
+    asked = links.read(link)
+    run = cc.simulate(asked.parameters, t_end=5.0, **asked.options())
+    (got,) = in_node([{"link": link, "times": [5.0]}], tmp_path)
+    assert got["status"] == run.attrs["status"] == "out_of_range"
+    assert got["ended"] == pytest.approx(run.attrs["end_time"], abs=1e-6)
+
+
+def test_the_start_of_the_page_is_that_of_the_package():
+    p = cc.Parameters(r_on=26, zeta_1=600)
+    state = cc.RandomPerturbation(seed=5).state(p, 1024)
+    amplitudes = 1e-4 * np.random.default_rng(5).uniform(-1.0, 1.0, (100, 4))
+    theta, bound = np.empty(1024), np.empty(1024)
+    length, area = random_start(amplitudes, p.n_bar, theta, bound)
+    assert length == pytest.approx(state.curve.length, abs=1e-13)
+    assert area == pytest.approx(state.curve.area, abs=1e-13)
+    assert np.abs(theta - state.curve.theta).max() < 2e-12
+    assert np.abs(bound - state.bound_fraction).max() < 1e-15
+
+
+def test_the_shipped_module_asks_a_page_for_memory_and_stack_only():
+    assert set(imports(shipped_module())) == {"env.__linear_memory", "env.__stack_pointer"}
+
+
+def test_the_shipped_module_was_built_from_these_kernels():
+    kept = resources.files("cellcrawl.explorer").joinpath(sources.FILE).read_text("utf-8")
+    assert kept.strip() == sources.digest(), "run python -m cellcrawl.explorer.build"
+
+
+@pytest.mark.slow
+@node.needs_node
+def test_a_fresh_build_computes_the_same_bits(tmp_path):
+    from cellcrawl.explorer.module import build
+
+    (tmp_path / "fresh.wasm").write_bytes(build())
+    asked = [{"link": link, "times": TIMES} for link in [*LINKS.values(), GROUND]]
+    assert in_node(asked, tmp_path) == in_node(asked, tmp_path, tmp_path / "fresh.wasm")
