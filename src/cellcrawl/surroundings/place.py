@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from cellcrawl._compile import kernel
+from cellcrawl._elementary import hypotenuse
 from cellcrawl.laws.functions import surround
 from cellcrawl.surroundings.base import CompiledSurroundings
 
@@ -42,7 +42,7 @@ def surround_edge(
     local = around.local
     local[:] = edge
     for i in range(x.size):
-        per_length = 1.0 / math.hypot(tangent_x[i], tangent_y[i])
+        per_length = 1.0 / hypotenuse(tangent_x[i], tangent_y[i])
         normal_x, normal_y = tangent_y[i] * per_length, -tangent_x[i] * per_length
         surround(around.compiled, around.data, time, x[i], y[i], normal_x, normal_y, edge, local, i)
 
