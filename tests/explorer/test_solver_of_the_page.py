@@ -13,7 +13,7 @@ from cellcrawl.explorer import links, sources
 from cellcrawl.explorer.content import content
 from cellcrawl.explorer.object_file import imports
 from cellcrawl.explorer.show import MODULE, shipped_module
-from cellcrawl.explorer.starting import random_start
+from cellcrawl.starts.small_waves import random_start
 from tests.explorer import node
 
 CODE = """
