@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import gzip
 import json
+import os
 import platform
 import sys
 import tempfile
@@ -56,6 +57,8 @@ def measure(minutes: float) -> dict[str, Any]:
     page = cc.explore(view="full").save(Path(tempfile.mkdtemp()) / "cell.html")
     found: dict[str, Any] = {
         "machine": platform.machine(),
+        "cores": os.cpu_count(),
+        "load": os.getloadavg()[0],
         "page_bytes": page.stat().st_size,
         "page_bytes_compressed": len(gzip.compress(page.read_bytes(), 9)),
     }

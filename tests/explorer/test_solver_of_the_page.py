@@ -13,7 +13,6 @@ from cellcrawl.explorer import links, sources
 from cellcrawl.explorer.content import content
 from cellcrawl.explorer.object_file import imports
 from cellcrawl.explorer.show import MODULE, shipped_module
-from cellcrawl.explorer.starting import random_start
 from tests.explorer import node
 
 CODE = """
@@ -50,7 +49,7 @@ def in_node(runs: list[dict], folder: Path, module: Path | None = None) -> list[
     "some", [[*LINKS.values()], pytest.param([GROUND], marks=pytest.mark.slow)], ids=["", "ground"]
 )
 @node.needs_node
-def test_the_module_computes_what_python_does(tmp_path, some):
+def test_the_module_computes_the_bits_of_python(tmp_path, some):
     found = in_node([{"link": link, "times": TIMES} for link in some], tmp_path)
     for link, got in zip(some, found, strict=True):
         asked = links.read(link)
@@ -59,11 +58,10 @@ def test_the_module_computes_what_python_does(tmp_path, some):
         run = cc.simulate(asked.parameters, t_end=TIMES[-1], **asked.options())
         for seen in got["seen"]:
             known = run.sel(time=seen["time"], method="nearest")
-            bound = 1e-9 if seen["time"] <= 2.0 else 1e-6  # chaotic growth of rounding
             for name in ("length", "tension", "area"):
-                assert seen[name] == pytest.approx(float(known[name]), rel=bound), (link, name)
+                assert seen[name] == float(known[name]), (link, name)
             for axis in "xy":
-                assert seen[axis] == pytest.approx(float(known[f"centroid_{axis}"]), abs=bound)
+                assert seen[axis] == float(known[f"centroid_{axis}"]), (link, axis)
 
 
 @node.needs_node
@@ -74,18 +72,6 @@ def test_a_run_leaves_the_model_as_it_does_in_python(tmp_path):
     (got,) = in_node([{"link": link, "times": [5.0]}], tmp_path)
     assert got["status"] == run.attrs["status"] == "out_of_range"
     assert got["ended"] == pytest.approx(run.attrs["end_time"], abs=1e-6)
-
-
-def test_the_start_of_the_page_is_that_of_the_package():
-    p = cc.Parameters(r_on=26, zeta_1=600)
-    state = cc.RandomPerturbation(seed=5).state(p, 1024)
-    amplitudes = 1e-4 * np.random.default_rng(5).uniform(-1.0, 1.0, (100, 4))
-    theta, bound = np.empty(1024), np.empty(1024)
-    length, area = random_start(amplitudes, p.n_bar, theta, bound)
-    assert length == pytest.approx(state.curve.length, abs=1e-13)
-    assert area == pytest.approx(state.curve.area, abs=1e-13)
-    assert np.abs(theta - state.curve.theta).max() < 2e-12
-    assert np.abs(bound - state.bound_fraction).max() < 1e-15
 
 
 def test_the_shipped_module_asks_a_page_for_memory_and_stack_only():

@@ -14,7 +14,6 @@ import numpy as np
 from numba.core import types
 
 from cellcrawl.curve.crossing import crossing_edges
-from cellcrawl.explorer.starting import random_start
 from cellcrawl.laws.law import PAPER
 from cellcrawl.solvers.adaptive import drive
 from cellcrawl.solvers.adaptive.differences import DIFFERENCES
@@ -29,6 +28,7 @@ from cellcrawl.solvers.adaptive.regrid import move_to_nodes, wanted_nodes
 from cellcrawl.solvers.adaptive.resolution import NODE_COUNTS, allowance, fewest_nodes, missed_on
 from cellcrawl.solvers.adaptive.staggered import HALO
 from cellcrawl.solvers.adaptive.waves import resample, slopes
+from cellcrawl.starts.small_waves import random_start
 from cellcrawl.surroundings import Islands, LocalPulse, Pillars, Surroundings
 from cellcrawl.surroundings.motion import MOTION
 from cellcrawl.surroundings.place import Around as AroundEdge

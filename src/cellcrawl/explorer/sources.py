@@ -21,7 +21,7 @@ _PLACES: Final = (
     "explorer/module.py",
     "explorer/object_file.py",
     "explorer/runtime.py",
-    "explorer/starting.py",
+    "starts/small_waves.py",
     "laws/compiled.py",
     "laws/functions.py",
     "laws/law.py",

@@ -21,6 +21,7 @@ from numba.extending import (
 )
 
 from cellcrawl._compile import inlined_kernel
+from cellcrawl._elementary import cosine, hyperbolic_tangent, natural_logarithm, sine
 from cellcrawl.laws import expressions
 from cellcrawl.physics.exponential import exponential, growth
 
@@ -68,11 +69,11 @@ _IN_KERNELS: Final[dict[str, Any]] = {
     "__name__": "cellcrawl.laws.functions",
     "exp": exponential,
     "growth": growth,
-    "log": math.log,
+    "log": natural_logarithm,
     "sqrt": math.sqrt,
-    "sin": math.sin,
-    "cos": math.cos,
-    "tanh": math.tanh,
+    "sin": sine,
+    "cos": cosine,
+    "tanh": hyperbolic_tangent,
     "choose": _choose,
     "power": _power,
 }

@@ -14,9 +14,11 @@ import numpy as np
 from cellcrawl.arguments import checked
 from cellcrawl.curve import Curve, from_path
 from cellcrawl.curve.construct import polar_path
+from cellcrawl.curve.equal_arclength import FEWEST_NODES
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import Parameters
 from cellcrawl.starts.base import CellState
+from cellcrawl.starts.small_waves import HIGHEST, STEEPEST, random_start
 from cellcrawl.validation import real_number, shown, table, whole_number
 
 _HIGHEST_MODE = 1000
@@ -110,8 +112,16 @@ def _random_shape(seed: int, amplitude: float, modes: int, nodes: int) -> tuple[
 
     Kept, for a sweep asks for the same few many times.
     """
-    draw = np.random.default_rng(seed).uniform(-1.0, 1.0, (modes, 4))
-    amplitudes = (amplitude * draw).tolist()
+    waves = amplitude * np.random.default_rng(seed).uniform(-1.0, 1.0, (modes, 4))
+    small = 0.5 * amplitude * modes * (modes + 1) <= STEEPEST and modes <= HIGHEST
+    if small and nodes > 2 * modes and nodes >= FEWEST_NODES:
+        theta, bound_waves = np.empty(nodes), np.empty(nodes)
+        length, area = random_start(waves, 0.0, theta, bound_waves)
+        origin = np.array([1.0 + float(np.add.accumulate(waves[::-1, 0])[-1]), 0.0])
+        curve = Curve(theta, length, origin)
+        curve.__dict__["area"] = area  # known exactly
+        return curve, bound_waves
+    amplitudes = waves.tolist()
     radius = {k: (a, b) for k, (a, b, _, _) in enumerate(amplitudes, start=1)}
     bound = {k: (c, d) for k, (_, _, c, d) in enumerate(amplitudes, start=1)}
     return _shape(nodes, radius, bound)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from cellcrawl._compile import kernel
+from cellcrawl._elementary import hypotenuse
 from cellcrawl.laws.functions import off_rate, surround, velocity
 from cellcrawl.physics.force_balance import SOLVED, solve_bonds
 from cellcrawl.surroundings.base import CompiledSurroundings
@@ -73,7 +73,7 @@ def surround_edge(
     if moves:
         _find_center(x, y, tangent_x, tangent_y, motion)
     for i in range(x.size):
-        per_length = 1.0 / math.hypot(tangent_x[i], tangent_y[i])
+        per_length = 1.0 / hypotenuse(tangent_x[i], tangent_y[i])
         surround(
             around.compiled,
             around.data,
@@ -114,7 +114,7 @@ def agrees(
     for i in range(x.size):
         r = off_rate(laws, phi[i], local, i)
         speed = velocity(laws, phi[i], r, sigma, kappa[i], local, i)
-        speed *= math.hypot(tangent_x[i], tangent_y[i])
+        speed *= hypotenuse(tangent_x[i], tangent_y[i])
         found_x += (x[i] - motion[CENTER_X]) * speed
         found_y += (y[i] - motion[CENTER_Y]) * speed
     if improve(found_x / motion[AREA], found_y / motion[AREA], motion):

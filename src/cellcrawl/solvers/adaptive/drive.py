@@ -12,6 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from cellcrawl._compile import kernel, woven_kernel
+from cellcrawl._elementary import power
 from cellcrawl.solvers.adaptive.differences import (
     DIFFERENCES,
     ERRORS,
@@ -256,15 +257,15 @@ def choose_step(
     if counters[EQUAL_STEPS] <= order:
         return
     best = order
-    growth = max(error, 1e-10) ** (-1.0 / (order + 1))
+    growth = power(max(error, 1e-10), -1.0 / (order + 1))
     if order > 1:
         lower = ERRORS[order - 1] * relative_size(table[order], table[0], nodes, contrast)
-        longer = max(lower / tolerance, 1e-10) ** (-1.0 / order)
+        longer = power(max(lower / tolerance, 1e-10), -1.0 / order)
         if longer > growth:
             best, growth = order - 1, longer
     if order < HIGHEST_ORDER:
         higher = ERRORS[order + 1] * relative_size(table[order + 2], table[0], nodes, contrast)
-        longer = max(higher / tolerance, 1e-10) ** (-1.0 / (order + 2))
+        longer = power(max(higher / tolerance, 1e-10), -1.0 / (order + 2))
         if longer > growth:
             best, growth = order + 1, longer
     growth = min(_SAFETY * growth, _MOST_GROWTH)
@@ -347,13 +348,13 @@ def run(
                 return NO_ROOT if ended == ROOTLESS else STEP_TOO_SMALL
             shrink = _SHRINK_ON_FAILURE
             if error < 1e10:
-                shrink = error ** (-1.0 / (order + 1))
+                shrink = power(error, -1.0 / (order + 1))
                 if order > 1:
                     lower = table[RESIDUAL]
                     for k in range(lower.size):
                         lower[k] = table[order, k] + correction[k]
                     size = relative_size(lower, table[_ITERATE], nodes, contrast)
-                    longer = (ERRORS[order - 1] * size / tolerance) ** (-1.0 / order)
+                    longer = power(ERRORS[order - 1] * size / tolerance, -1.0 / order)
                     if longer > shrink:
                         order, shrink = order - 1, longer
                 shrink = max(_LEAST_SHRINK, _SAFETY * min(shrink, 1.0))

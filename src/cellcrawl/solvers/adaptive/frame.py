@@ -12,6 +12,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from cellcrawl._compile import kernel
+from cellcrawl._elementary import cosine, sine
 from cellcrawl.curve.fourier import BEFORE, TAPS
 from cellcrawl.laws.functions import friction, off_rate, velocity
 from cellcrawl.physics.force_balance import SOLVED, bond_force, solve_bonds
@@ -179,8 +180,8 @@ def fill_frame(
     sigma = state[state.size - SCALARS + TENSION]
     if around is not None:
         for i in range(nodes):
-            out[_VELOCITY, i] = math.cos(out[2, i])
-            out[_FRICTION, i] = math.sin(out[2, i])
+            out[_VELOCITY, i] = cosine(out[2, i])
+            out[_FRICTION, i] = sine(out[2, i])
         x, z, tangent_x, tangent_z, kappa = out[0], out[1], out[_VELOCITY], out[_FRICTION], out[3]
         far = edge[:rows]
         if around.motion[MOVES] > 0.0:

@@ -14,6 +14,7 @@ import numpy as np
 
 from cellcrawl._compile import kernel, woven_kernel
 from cellcrawl.curve.fourier import BEFORE, TAPS, lagrange_weights
+from cellcrawl.physics.exponential import exponential
 from cellcrawl.solvers.adaptive.staggered import (
     HALO,
     cell_mean,
@@ -97,7 +98,7 @@ def _smooth(a: np.ndarray, b: np.ndarray, nodes: int) -> None:
 
     Each half starts half a ring before it, where what it does not know has died away.
     """
-    keep = math.exp(-1.0 / (_SMOOTHING * nodes))
+    keep = exponential(-1.0 / (_SMOOTHING * nodes))
     gain = (1.0 - keep) ** 4
     half, last = nodes // 2, nodes - 1
     p0 = q0 = p1 = q1 = 0.0

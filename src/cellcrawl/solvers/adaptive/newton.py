@@ -14,6 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from cellcrawl._compile import inlined_kernel, kernel
+from cellcrawl._elementary import cosine, sine
 from cellcrawl.laws.functions import balance, partials, velocity
 from cellcrawl.solvers.adaptive.entries import (
     AREA,
@@ -226,5 +227,5 @@ def solve(
     scalars[AREA] += growth
     scalars[TENSION] += matrix[SCALARS, 2] * growth  # so that sigma - G A stays to rounding
     scalars[LENGTH] += c * dot(speed, bend) / per_spacing
-    scalars[ORIGIN_X] += first * math.sin(state[HALO])
-    scalars[ORIGIN_Y] -= first * math.cos(state[HALO])
+    scalars[ORIGIN_X] += first * sine(state[HALO])
+    scalars[ORIGIN_Y] -= first * cosine(state[HALO])

@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from cellcrawl._compile import kernel, woven_kernel
+from cellcrawl._elementary import hypotenuse
 from cellcrawl.curve.sines import sine_and_cosine
 from cellcrawl.solvers.adaptive.entries import AREA, LENGTH, ORIGIN_X, ORIGIN_Y
 from cellcrawl.solvers.adaptive.staggered import (
@@ -131,4 +132,4 @@ def project(state: np.ndarray, nodes: int, work: np.ndarray) -> tuple[float, flo
     scalars[LENGTH] *= factor
     scalars[ORIGIN_X] += (1.0 - factor) * x
     scalars[ORIGIN_Y] += (1.0 - factor) * y
-    return math.hypot(gap_x, gap_y) / nodes, abs(1.0 / ratio - 1.0)
+    return hypotenuse(gap_x, gap_y) / nodes, abs(1.0 / ratio - 1.0)

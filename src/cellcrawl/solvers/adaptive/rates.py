@@ -15,6 +15,7 @@ from typing import Any, Final
 import numpy as np
 
 from cellcrawl._compile import kernel, woven_kernel
+from cellcrawl._elementary import cosine, sine
 from cellcrawl.laws.functions import (
     binding,
     nearly_renewed_rate,
@@ -187,8 +188,8 @@ def rates(
     scalars_t[LENGTH] = length * mean_stretch
     scalars_t[TENSION] = local[TENSION_RATE, 0] * area_t
     scalars_t[AREA] = area_t
-    scalars_t[ORIGIN_X] = first_speed * math.sin(w[HALO])
-    scalars_t[ORIGIN_Y] = -first_speed * math.cos(w[HALO])
+    scalars_t[ORIGIN_X] = first_speed * sine(w[HALO])
+    scalars_t[ORIGIN_Y] = -first_speed * cosine(w[HALO])
     return True
 
 

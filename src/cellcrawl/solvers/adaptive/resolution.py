@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 
 from cellcrawl._compile import kernel
+from cellcrawl._elementary import sine
 from cellcrawl.solvers.adaptive.entries import FIELDS
 from cellcrawl.solvers.adaptive.staggered import (
     HALO,
@@ -103,7 +104,7 @@ def missed_on(waves: np.ndarray, nodes: int) -> float:
         phase = 2.0 * math.pi / nodes * k
         part = 1.0
         if phase <= math.pi:
-            part = (2.0 * math.sin(0.5 * phase) / _SCALE) ** (2 * _DOUBLE_DIFFERENCES)
+            part = (2.0 * sine(0.5 * phase) / _SCALE) ** (2 * _DOUBLE_DIFFERENCES)
         square += waves[k] * waves[k]
         lost += (part * waves[k]) ** 2
     return math.sqrt(lost) / (math.sqrt(square) + _FLAT)

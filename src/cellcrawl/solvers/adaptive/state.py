@@ -9,6 +9,7 @@ import numpy as np
 from cellcrawl.curve import fourier
 from cellcrawl.solvers.adaptive.entries import AREA, FIELDS, LENGTH, ORIGIN_X, SCALARS, TENSION
 from cellcrawl.solvers.adaptive.staggered import HALO
+from cellcrawl.solvers.adaptive.waves import resample
 from cellcrawl.starts.base import CellState
 
 
@@ -61,8 +62,13 @@ def from_cell(cell: CellState, nodes: int) -> np.ndarray:
     """State of a cell on ``nodes`` nodes."""
     state = np.zeros(size(nodes))
     curve = cell.curve
-    angle(state)[:] = fourier.resample(curve.theta - winding(curve.nodes), nodes)
-    bound(state)[:] = fourier.resample(cell.bound_fraction, nodes, math.pi / nodes)
+    wobble, bound_fraction = curve.theta - winding(curve.nodes), cell.bound_fraction
+    if nodes != curve.nodes:
+        resample(wobble, wobble, 0.0, angle(state), angle(state))
+        resample(bound_fraction, bound_fraction, math.pi / nodes, bound(state), bound(state))
+    else:
+        angle(state)[:] = wobble
+        bound(state)[:] = fourier.resample(bound_fraction, nodes, math.pi / nodes)
     density(state)[:] = 1.0
     values = scalars(state)
     values[LENGTH], values[TENSION], values[AREA] = curve.length, cell.tension, curve.area

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from cellcrawl._compile import kernel
+from cellcrawl._elementary import cosine, hypotenuse, sine
 
 _ROUNDING = 3e-13  # waves smaller than this are what rounding leaves of none
 
@@ -21,7 +22,7 @@ def transform(values: np.ndarray, sign: float) -> np.ndarray:
     turns = np.empty(count, np.complex128)
     for k in range(count):
         angle = sign * 2.0 * math.pi * k / count
-        turns[k] = complex(math.cos(angle), math.sin(angle))
+        turns[k] = complex(cosine(angle), sine(angle))
     now, then = values.copy(), np.empty(count, np.complex128)
     done = 1  # each run of this many entries is the transform of a comb of the values
     while done < count:
@@ -61,11 +62,11 @@ def resample(
     moved = np.zeros(new, np.complex128)
     half = min(old, new) // 2
     for k in range(half):
-        turn = complex(math.cos(ahead * k), math.sin(ahead * k)) / old
+        turn = complex(cosine(ahead * k), sine(ahead * k)) / old
         moved[k] = waves[k] * turn
         if k > 0:
             moved[new - k] = waves[old - k] * turn.conjugate()
-    turn = complex(math.cos(ahead * half), math.sin(ahead * half)) / old
+    turn = complex(cosine(ahead * half), sine(ahead * half)) / old
     if old < new:  # the shortest wave of the old nodes is half of each direction
         moved[half] = 0.5 * waves[half] * turn
         moved[new - half] = 0.5 * waves[half] * turn.conjugate()
@@ -96,7 +97,7 @@ def slopes(w: np.ndarray, n: np.ndarray, g: np.ndarray) -> np.ndarray:
         forth, back = two[k], two[(nodes - k) % nodes].conjugate()
         square = 0.0
         for wave in (0.5 * (forth + back), 0.5 * (forth - back), one[k]):
-            size = abs(wave) / nodes
+            size = hypotenuse(wave.real, wave.imag) / nodes
             square += size * size if size >= _ROUNDING else 0.0
         sizes[k] = k * math.sqrt(2.0 * square)
     return sizes

@@ -1,7 +1,7 @@
-"""The paper's random start as kernels, for a page that has no NumPy.
+"""A circle with small waves, as the paper's random start is, in kernels: a browser has no NumPy.
 
-The same curve as `RandomPerturbation` makes, by shorter ways that a circle with small waves allows:
-radius, slope and area are known exactly, only the arclength has to be integrated.
+The same curve as `from_path` makes, by shorter ways that small waves allow: radius, slope and area
+are known exactly, only the arclength has to be integrated.
 """
 
 from __future__ import annotations
@@ -12,10 +12,13 @@ from typing import Final
 import numpy as np
 
 from cellcrawl._compile import kernel
+from cellcrawl._elementary import arc_tangent
 from cellcrawl.curve.fourier import local_values
 from cellcrawl.curve.sines import sine_and_cosine
 
 SAMPLES: Final = 4096
+HIGHEST: Final = 255  # mode that so many samples show
+STEEPEST: Final = 0.6  # slope of all waves together up to which Newton steps find every place
 _FINER: Final = 8
 _NEWTON_STEPS: Final = 6
 _CLOSINGS: Final = 8
@@ -101,7 +104,7 @@ def random_start(
             angle[i] -= miss / pace
     for i in range(nodes):
         wave, slope = waves(amplitudes, 0, angle[i])
-        theta[i] = angle[i] + 0.5 * math.pi - math.atan(slope / (1.0 + wave))
+        theta[i] = angle[i] + 0.5 * math.pi - arc_tangent(slope / (1.0 + wave))
         wave, slope = waves(amplitudes, 2, angle[i])
         bound[i] = n_bar + wave
     _close(theta)
