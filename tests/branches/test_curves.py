@@ -25,6 +25,7 @@ def test_a_curve_passes_the_points_of_branches_at_other_parameters(pitchfork):
     )
 
 
+@pytest.mark.slow
 def test_a_curve_of_folds_passes_the_folds_of_branches():
     p = cc.Parameters(r_on=30, zeta_1=450)
     start = branches.from_circle(p, "zeta_1", speed=0.01)
