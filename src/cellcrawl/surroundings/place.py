@@ -52,6 +52,14 @@ def around(
 
 
 @kernel
+def copy_rows(source: np.ndarray, target: np.ndarray) -> None:
+    """Copy an array of two dimensions: a whole assignment compiles to much text for its error."""
+    for row in range(source.shape[0]):
+        for i in range(source.shape[1]):
+            target[row, i] = source[row, i]
+
+
+@kernel
 def surround_edge(
     around: Any,
     time: float,
@@ -68,7 +76,7 @@ def surround_edge(
     have shape (nodes,).
     """
     local, motion = around.local, around.motion
-    local[:] = edge
+    copy_rows(edge, local)
     moves = motion[MOVES] > 0.0
     if moves:
         _find_center(x, y, tangent_x, tangent_y, motion)
@@ -119,7 +127,7 @@ def agrees(
         found_y += (y[i] - motion[CENTER_Y]) * speed
     if improve(found_x / motion[AREA], found_y / motion[AREA], motion):
         return True
-    around.before[:] = local
+    copy_rows(local, around.before)
     return False
 
 

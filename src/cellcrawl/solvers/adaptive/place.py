@@ -22,7 +22,7 @@ from cellcrawl.solvers.adaptive.projection import (
 from cellcrawl.solvers.adaptive.staggered import HALO, difference_ahead, mean_ahead
 from cellcrawl.surroundings.base import CompiledSurroundings
 from cellcrawl.surroundings.motion import AREA, CENTER_X, CENTER_Y, MOVES, VX, VY, at_rest, improve
-from cellcrawl.surroundings.place import SETTLED, changed
+from cellcrawl.surroundings.place import SETTLED, changed, copy_rows
 
 _HALO: Final = np.uint64(HALO)
 MORE_CURVED: Final = 1e-5
@@ -145,7 +145,7 @@ def settle_midpoints(
     share = scalars[LENGTH] / (nodes * motion[AREA])
     if improve(share * found_x, share * found_y, motion):
         return SETTLED
-    around.before[:] = around.local
+    copy_rows(around.local, around.before)
     _fill(around, time, w, scalars, fine, edge, 0.0, around.local)
     return changed(around.local, around.before, motion)
 
