@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import builtins
+import contextlib
 import itertools
 import os
 import pickle
@@ -140,6 +141,7 @@ def test_a_cancelled_movie_leaves_no_file_and_keeps_the_old_one(tmp_path, monkey
 @pytest.mark.skipif(sys.platform == "win32", reason="signals to a process group")
 def test_ctrl_c_on_the_terminal_leaves_no_file_and_no_encoder(tmp_path):
     code = (
+        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "from tests.runs import circling; import cellcrawl as cc\n"
         f"cc.movie(circling(0.3), {str(tmp_path / 'cell.mp4')!r}, seconds=3000)"
     )
@@ -147,12 +149,17 @@ def test_ctrl_c_on_the_terminal_leaves_no_file_and_no_encoder(tmp_path):
         [sys.executable, "-c", code], stderr=subprocess.PIPE, process_group=0
     )
     unfinished = tmp_path / f".cell.{process.pid}.part.mp4"
-    give_up = time.monotonic() + 60.0
-    while not (unfinished.exists() and unfinished.stat().st_size) and time.monotonic() < give_up:
-        assert process.poll() is None, process.stderr.read().decode()
-        time.sleep(0.05)
-    os.killpg(process.pid, signal.SIGINT)
-    _, said = process.communicate(timeout=30)
+    try:
+        give_up = time.monotonic() + 60.0
+        while not (unfinished.exists() and unfinished.stat().st_size):
+            assert process.poll() is None, process.stderr.read().decode()
+            assert time.monotonic() < give_up
+            time.sleep(0.05)
+        os.killpg(process.pid, signal.SIGINT)
+        _, said = process.communicate(timeout=30)
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
     assert b"KeyboardInterrupt" in said
     assert list(tmp_path.iterdir()) == []
     assert str(unfinished) not in _command_lines()

@@ -166,9 +166,13 @@ def boundaries(
             axes.set_xlabel(_label(curves[0].names[0]))
             axes.set_ylabel(_label(curves[0].names[1]))
         if legend:
-            axes.figure.legend(
-                list(seen.values()), list(seen), loc="outside upper center", fontsize=7
-            ) if ax is None else axes.legend(list(seen.values()), list(seen), fontsize="small")
+            keys, labels = list(seen.values()), list(seen)
+            if ax is None:
+                axes.figure.legend(
+                    keys, labels, loc="outside upper center", fontsize="small", frameon=False
+                )
+            else:
+                axes.legend(keys, labels, fontsize="small")
     return axes
 
 
