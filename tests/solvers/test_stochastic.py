@@ -164,6 +164,7 @@ def test_a_record_between_two_steps_varies_as_one_at_a_step():
     assert abs(found.value - 1.0) < 4.0 * found.error + 0.005
 
 
+@pytest.mark.slow  # compiles two solvers for them
 def test_it_knows_laws_and_surroundings():
     around = cc.surroundings.Island(radius=1.1, outside=0.5, edge=0.3)
     world = {"laws": cc.laws.Stiffness(chi=0.8), "surroundings": around}
