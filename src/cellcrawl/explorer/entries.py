@@ -30,7 +30,7 @@ from cellcrawl.solvers.adaptive.staggered import HALO
 from cellcrawl.solvers.adaptive.waves import resample, slopes
 from cellcrawl.starts.small_waves import random_start
 from cellcrawl.surroundings import Islands, LocalPulse, Pillars, Surroundings
-from cellcrawl.surroundings.motion import MOTION
+from cellcrawl.surroundings.motion import BENDS, MOTION, MOVES
 from cellcrawl.surroundings.place import Around as AroundEdge
 
 MOST_DISCS: Final = 200  # of islands, and of pillars
@@ -74,6 +74,7 @@ def layout() -> dict[str, Any]:
     data = GROUND.compiled(PAPER).data
     return {
         "rows": list(PAPER.rows),
+        "motion": MOTION,
         "halo": HALO,
         "fields": FIELDS,
         "scalars": SCALARS,
@@ -166,16 +167,25 @@ def _on_the_way(surrounded: bool) -> tuple[Any, Any, Any]:
 
     if surrounded:
 
+        def still(local_at: Any, nodes: int) -> Any:
+            """The motion, of which no ground here asks: beside the local parameters."""
+            motion = _carray(local_at, (ROWS * nodes + MOTION,))[ROWS * nodes :]
+            motion[BENDS] = motion[MOVES] = 0.0
+            return motion
+
+        still = numba.extending.register_jitable(still)
+
         def around(data_at: Any, local_at: Any, room_at: Any, nodes: int) -> Any:
             data = _carray(data_at, (entries,))
-            local = _carray(local_at, (ROWS, nodes))
+            local, before = _carray(local_at, (ROWS, nodes)), _carray(local_at, (ROWS, 0))
+            motion = still(local_at, nodes)
             room = _carray(room_at, (TRACE_ROWS, nodes + 2 * HALO))
-            return Around(ground, data, local, np.empty((ROWS, 0)), np.zeros(MOTION), room)
+            return Around(ground, data, local, before, motion, room)
 
         def around_edge(data_at: Any, local_at: Any, count: int) -> Any:
             data = _carray(data_at, (entries,))
-            local = _carray(local_at, (ROWS, count))
-            return AroundEdge(ground, data, local, np.empty((ROWS, 0)), np.zeros(MOTION))
+            local, before = _carray(local_at, (ROWS, count)), _carray(local_at, (ROWS, 0))
+            return AroundEdge(ground, data, local, before, still(local_at, count))
 
     else:
 

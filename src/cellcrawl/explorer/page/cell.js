@@ -35,11 +35,11 @@ export class Cell {
     const span = L.most_nodes + 2 * L.halo, size = L.fields * span + L.scalars;
     const numbers = { // how many at most
       ret: 2, exception: 2, control: L.controls, counters: L.counters, whole: 16, profile: ROWS,
-      out: FIELDS.length * POINTS, edgeOut: (ROWS + 1) * POINTS, localOut: ROWS * POINTS, data: L.ground.length,
+      out: FIELDS.length * POINTS, edgeOut: (ROWS + 1) * POINTS, localOut: ROWS * POINTS + L.motion, data: L.ground.length,
       amplitudes: 4 * MODES, theta: L.most_nodes, bound: L.most_nodes,
       table: L.table_rows * size, spareTable: L.table_rows * size, y: L.most_nodes, spareY: L.most_nodes,
       edge: ROWS * L.most_nodes, mesh: L.mesh_rows * span, work: L.work_rows * span, matrix: L.matrix_rows * L.most_nodes,
-      local: ROWS * L.most_nodes, room: L.trace_rows * span, state: size, trace: L.trace_rows * span,
+      local: ROWS * L.most_nodes + L.motion, room: L.trace_rows * span, state: size, trace: L.trace_rows * span,
     };
     this.at = {};
     let next = STACK;
