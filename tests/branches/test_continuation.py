@@ -135,3 +135,10 @@ def test_what_cannot_be_followed_is_refused_in_one_line(branch):
         branches.circle(HIGH).continue_in("r_on", 20)
     with pytest.raises(cc.InputError, match="k_sigma = 0"):
         branches.gliding(HIGH.replace(k_sigma=0))
+
+
+def test_turning_cells_go_on_from_where_gliding_ones_begin_to_turn():
+    gliding = branches.gliding(cc.Parameters(r_on=55.2, zeta_1=560)).continue_in("r_on", 54.5)
+    turning = gliding.points("pitchfork")[0].branch_off().continue_in("r_on", 52.0)
+    assert turning.status == "completed"
+    assert turning[-1].kind == "turning"

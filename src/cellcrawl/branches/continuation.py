@@ -20,7 +20,7 @@ from cellcrawl.branches.points import (
     crossings,
     fold_between,
 )
-from cellcrawl.branches.resolution import better_mesh, is_resolved, resampled
+from cellcrawl.branches.resolution import better_mesh, resampled
 from cellcrawl.branches.setting import bounds_of
 from cellcrawl.branches.state import AT_REST, SteadyState
 from cellcrawl.branches.system import NotFound, Root, System
@@ -38,7 +38,6 @@ ENDS: Final = {
     "gliding": "the branch met gliding states, where the turning rate vanishes",
     "bound": "the parameter has come to the end of its range",
     "no convergence": "Newton's method found no next state even for the smallest step",
-    "unresolved": "the cell has corners too sharp for the nodes there are",
     "states": "the branch has as many states as asked for",
     "closed": "the branch came back to where it began",
     "interrupted": "stopped by the user; can go on",
@@ -189,8 +188,6 @@ def _walk(branch: Branch, walker: Walker, most: int, largest: float, keeper: Any
     low, high = bounds_of(walker.state.setting.laws, walker.name)
     while len(branch.states) < most:
         _refit(walker)
-        if not is_resolved(walker.state.system, walker.state.unknowns):
-            return "unresolved"
         before, slope = walker.state, walker.slope
         value = before.setting.value(walker.name)
         bound = low if slope < 0.0 else high

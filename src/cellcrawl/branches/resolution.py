@@ -18,21 +18,17 @@ Sampler = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 COUNTS: Final = (49, 65, 97, 129, 193, 225, 257, 289, 321, 385, 513)
 _WASTED: Final = 1e-13
 _CROWDS: Final = ((0.93, 0.25), (0.93, 0.5), (0.85, 0.35), (0.6, 0.5))
-_UNRESOLVED = 1e-5
 _MOST = 3
 _CORNER = 1.5  # times the mean curvature
 _FINE = 2048
 
 
-def choose(sampler: Sampler, mirror: bool, fewest: int = COUNTS[0]) -> Mesh:
-    """Return the smallest mesh that resolves a shape, or the best there is.
-
-    One of fewer than ``fewest`` nodes is not looked for.
-    """
+def choose(sampler: Sampler, mirror: bool) -> Mesh:
+    """Return the smallest mesh that resolves a shape, or the best there is."""
     best: tuple[float, Mesh] | None = None
     places = corners(sampler, mirror)
     sets = [kept for kept in dict.fromkeys((places, places[:2])) if kept]
-    for count in [one for one in COUNTS if one >= fewest] or COUNTS[-1:]:
+    for count in COUNTS:
         candidates = [Mesh(count)]
         for crowded in sets:
             candidates += [Mesh(count, crowded, rho, share) for rho, share in _CROWDS]
@@ -55,12 +51,6 @@ def wanted(count: int) -> float:
 def tail_on(mesh: Mesh, w: np.ndarray, n: np.ndarray) -> float:
     """Return the share of the shortest waves of a shape on a mesh."""
     return mesh.tail(w, n)
-
-
-def is_resolved(system: System, y: np.ndarray) -> bool:
-    """Whether a mesh shows a shape well enough for its numbers to be told."""
-    whole = system.whole(system.unpack(y)[0])
-    return tail_on(system.mesh, whole.w, whole.n) < _UNRESOLVED
 
 
 def corners(sampler: Sampler, mirror: bool) -> tuple[float, ...]:
@@ -107,7 +97,7 @@ def better_mesh(system: System, y: np.ndarray, *, anew: bool = False) -> Mesh | 
     def sampler(alpha: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return mesh.values(whole.w, alpha), mesh.values(whole.n, alpha)
 
-    found = choose(sampler, system.mirror, COUNTS[0] if fits else mesh.nodes)
+    found = choose(sampler, system.mirror)
     if not fits and found.nodes <= mesh.nodes:
         return found if tail_on(found, *sampler(found.alpha)) < 0.5 * tail else None
     return None if found == mesh else found
