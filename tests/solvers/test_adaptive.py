@@ -306,3 +306,16 @@ def test_an_instant_has_the_bits_of_its_frame_and_is_simple_when_it_says_so() ->
         if first_crossing(frame.points) is not None:
             break
     assert 0 < doubtful < 29
+
+
+@pytest.mark.parametrize("changes", [[(0.5, 26.0), (0.5, 40.0)], [(0.2, 26.0), (0.7, 40.0)]])
+def test_many_instants_in_one_call_are_those_of_a_call_each(changes) -> None:
+    schedule = cc.Schedule({"r_on": changes})
+    times = [k / 10 for k in range(13)]
+    together, each = solver(schedule=schedule), solver(schedule=schedule)
+    seen, ended = together.instants(times)
+    assert ended is None
+    assert len(seen) == len(times)
+    for time, found in zip(times, seen, strict=True):
+        assert each.advance(time) is None
+        assert vars(found) == vars(each.instant(time))

@@ -7,7 +7,15 @@ from typing import Any
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.solvers.adaptive.drive import ORDER, REACHED, STEP, TIME, run
+from cellcrawl.solvers.adaptive.drive import (
+    AT_BREAK,
+    ORDER,
+    REACHED,
+    RESTARTING,
+    STEP,
+    TIME,
+    run,
+)
 from cellcrawl.solvers.adaptive.frame import CLEARANCE, CLEARLY, measure
 
 
@@ -40,9 +48,12 @@ def follow(
     """`run` to each of ``times`` and `measure` the cell there; rows of ``measures``.
 
     Returns how many times were dealt with, and what `run` returned last. Stops after a time at
-    which the edge may cross itself, for the caller to look.
+    which the edge may cross itself, for the caller to look, and before a step under parameters
+    that have jumped, for the caller to restart.
     """
     for i in range(times.size):
+        if counters[RESTARTING] != 0 and control[TIME] < times[i]:
+            return i, AT_BREAK
         code = run(
             laws,
             around,
