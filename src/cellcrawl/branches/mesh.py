@@ -194,11 +194,6 @@ class Mesh:
         return worst
 
 
-def symmetric_mesh(nodes: int, place: float, sharpness: float, share: float) -> Mesh:
-    """Return a mesh that crowds at two mirror places."""
-    return Mesh(nodes, (place, 2.0 * math.pi - place), sharpness, share)
-
-
 def even_samples(samples: Sequence[float] | np.ndarray, alpha: np.ndarray) -> np.ndarray:
     """Return samples at equal arclengths (any number) at other angles along the edge."""
     values = np.asarray(samples, dtype=float)

@@ -70,6 +70,33 @@ def crank_nicolson(
 
 
 @kernel
+def measure(
+    theta: np.ndarray,
+    scalars: np.ndarray,
+    tension_rate: float,
+    cosine: np.ndarray,
+    sine: np.ndarray,
+    kappa: np.ndarray,
+    x: np.ndarray,
+    z: np.ndarray,
+    new: np.ndarray,
+) -> None:
+    """Close a new edge, and leave its shape from node 0 and its closure, area and tension.
+
+    ``new`` has the length already; ``scalars`` are those of the edge before.
+    """
+    for i in range(theta.size):
+        cosine[i] = math.cos(theta[i])
+        sine[i] = math.sin(theta[i])
+    close(theta, cosine, sine)
+    curvature(theta, new[LENGTH], kappa)
+    gap = points(new[LENGTH], cosine, sine, kappa, x, z)
+    new[CLOSURE] = max(scalars[CLOSURE], gap)
+    new[AREA] = enclosed_area(new[LENGTH], cosine, sine, x, z)
+    new[TENSION] = scalars[TENSION] + tension_rate * (new[AREA] - scalars[AREA])
+
+
+@kernel
 def advance(
     laws: Any,
     around: Any,
@@ -128,15 +155,7 @@ def advance(
         if not (0.0 < new[LENGTH] < np.inf):
             return NOT_FINITE, 0, step
 
-        for i in range(nodes):
-            cosine[i] = math.cos(new_theta[i])
-            sine[i] = math.sin(new_theta[i])
-        close(new_theta, cosine, sine)
-        curvature(new_theta, new[LENGTH], kappa)
-        gap = points(new[LENGTH], cosine, sine, kappa, x, z)
-        new[CLOSURE] = max(scalars[CLOSURE], gap)
-        new[AREA] = enclosed_area(new[LENGTH], cosine, sine, x, z)
-        new[TENSION] = scalars[TENSION] + tension_rate * (new[AREA] - scalars[AREA])
+        measure(new_theta, scalars, tension_rate, cosine, sine, kappa, x, z, new)
 
         new_n[:] = n
         for i in range(nodes):

@@ -19,8 +19,6 @@ from cellcrawl.laws.functions import binding, off_rate, partials, turnover, velo
 from cellcrawl.physics.force_balance import SOLVED, halley_step
 from cellcrawl.solvers.cyclic import solve_cyclic_tridiagonal
 from cellcrawl.solvers.paper.step import (
-    AREA,
-    CLOSURE,
     LENGTH,
     NO_ROOT,
     NOT_FINITE,
@@ -28,13 +26,11 @@ from cellcrawl.solvers.paper.step import (
     ORIGIN_Y,
     STEPPED,
     TENSION,
+    measure,
 )
 from cellcrawl.solvers.paper.tangent_angle import (
     central_difference,
-    close,
     curvature,
-    enclosed_area,
-    points,
     tangential_velocity,
 )
 from cellcrawl.solvers.stochastic.normals import fill_normals
@@ -224,15 +220,7 @@ def advance(
             new[ORIGIN_Y] = scalars[ORIGIN_Y] + dt * pushed_y
             if not (0.0 < new[LENGTH] < np.inf):
                 return NOT_FINITE, 0, step
-            for i in range(nodes):
-                cosine[i] = math.cos(new_theta[i])
-                sine[i] = math.sin(new_theta[i])
-            close(new_theta, cosine, sine)
-            curvature(new_theta, new[LENGTH], bend)
-            gap = points(new[LENGTH], cosine, sine, bend, x, z)
-            new[CLOSURE] = max(scalars[CLOSURE], gap)
-            new[AREA] = enclosed_area(new[LENGTH], cosine, sine, x, z)
-            new[TENSION] = sigma + tension_rate * (new[AREA] - scalars[AREA])
+            measure(new_theta, scalars, tension_rate, cosine, sine, bend, x, z, new)
             kicked_linkers(n, first, spacing, dt, variance, normals, new_n, tally, spare)
             if not (math.isfinite(new[TENSION]) and math.isfinite(new_n.sum() + bend.sum())):
                 return NOT_FINITE, 0, step
