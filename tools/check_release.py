@@ -3,7 +3,8 @@
     python tools/check_release.py [--python PYTHON ...] [--lowest]
 
 Each step says what it found; the first that does not hold ends it with exit code 1. Needs what the
-README needs, with the package index. A user without a writable home is tried where this runs as root.
+README needs, with the package index. A user without a writable home is tried where this runs as
+root and another user may run the interpreter.
 """
 
 from __future__ import annotations
@@ -126,8 +127,7 @@ def use(place: Path, python: str, packages: str, wheel: Path, archive: Path) -> 
         run(python, ROOT / "tools" / "lowest_versions.py") if packages == "lowest" else ""
     )
     run(*pip, "-c", limits, wheel)
-    stranger = ["nobody"] if hasattr(os, "getuid") and os.getuid() == 0 else []
-    for user in (None, *stranger):
+    for user in (None, *stranger(scripts(home) / "python")):
         work = Path(tempfile.mkdtemp(dir=place))
         work.chmod(0o777)
         out = run(scripts(home) / "cellcrawl", *FIRST_RUN, work / "run", folder=work, user=user)
@@ -152,6 +152,16 @@ def use(place: Path, python: str, packages: str, wheel: Path, archive: Path) -> 
     part = [source / "tests" / name for name in ("parameters", "data", "linear")]
     run(scripts(home) / "python", "-m", "pytest", "-q", *part, folder=source)
     print("  the archive's tests of parameters, data and theory pass with the wheel")
+
+
+def stranger(python: Path) -> list[str]:
+    """Return a user who has no home and may run this interpreter, if there is one."""
+    try:
+        subprocess.run([python, "-c", ""], user="nobody", check=True, capture_output=True)
+    except (OSError, PermissionError, subprocess.CalledProcessError, ValueError):
+        print("  not tried as a user without a home: there is none, or none may run this Python")
+        return []
+    return ["nobody"]
 
 
 def scripts(environment: Path) -> Path:
