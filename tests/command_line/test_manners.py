@@ -118,3 +118,17 @@ def test_ctrl_c_while_starting_ends_in_one_line():
     _, told = process.communicate(timeout=60)
     assert process.returncode == 130
     assert told.lstrip() == "cellcrawl: stopped\n"  # click ends the line of ^C where it started
+
+
+def test_a_wait_for_the_compiler_is_told_once(capsys, monkeypatch):
+    import numba
+
+    from cellcrawl.command_line import compiling
+
+    compiling.announce_compilation.__wrapped__()
+    numba.njit(lambda x: x)(1)
+    assert "compiling" not in capsys.readouterr().err  # a moment is not worth a line
+    monkeypatch.setattr(compiling, "_PATIENCE", -1.0)
+    for add in (1, 2):
+        numba.njit(lambda x, add=add: x + add)(1)
+    assert capsys.readouterr().err.count("compiling the solver for this machine") == 1

@@ -23,6 +23,9 @@ def resume(file: Path, t_end: float) -> int:
       cellcrawl resume cellcrawl-run/run.nc --t-end 200
     """
     import cellcrawl as cc
+    from cellcrawl.command_line.compiling import announce_compilation
+
+    announce_compilation()
 
     with cc.resume(file, t_end, progress=wants_progress()) as dataset:
         report_run(dataset)

@@ -104,6 +104,9 @@ def simulate(
     Ctrl-C keeps what was computed; `cellcrawl resume` goes on from there.
     """
     import cellcrawl as cc
+    from cellcrawl.command_line.compiling import announce_compilation
+
+    announce_compilation()
 
     given = read_configuration(config) if config is not None else Configuration({}, {}, None, None)
     chosen = {name: value for name, value in parameters.items() if value is not None}
