@@ -12,7 +12,7 @@ import pytest
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 
-import gallery_page
+import gallery_page  # noqa: E402
 
 # Short enough for every day; the others are asked for by `-m slow tests/test_gallery.py`.
 QUICK = {"24_linear_theory", "06_kymograph"}

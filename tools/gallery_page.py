@@ -24,7 +24,7 @@ _HEAD = """\
 # Gallery
 
 {count} short scripts, each with its picture. Each ends in an assertion: a number of theory, of an
-independent program, or of the model's own laws, which the run has to meet. All of them are run by the
+independent program, or of the model's own laws, which the run has to meet. All are run by the
 tests. Take the nearest one and change it.
 
 The nine cells that the paper names are on [a page of their own](gallery.md).

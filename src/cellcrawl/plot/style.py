@@ -163,7 +163,8 @@ def colormap_for(usual: str, given: str | None = None) -> str:
     return checked_colormap(given) if given is not None else _chosen.get().colormap or usual
 
 
-def house_style() -> dict[str, Any]:
+@checked
+def house_style() -> Any:
     """Return the settings that pictures of this package have, for figures of your own.
 
     Returns
