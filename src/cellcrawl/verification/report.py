@@ -30,9 +30,9 @@ wrong.
 
 _CLAIMS_HEAD: Final = """# The paper's claims
 
-Each statement of the paper (Chen, Saintillan & Rangamani 2023) that can be computed, measured anew by
-`cellcrawl verify --full`: {all} in all, of which {no} do not hold as written. Those come first, with the
-reason. How each was measured: [verification](verification.md).
+Each statement of the paper (Chen, Saintillan & Rangamani 2023) that can be computed, measured anew
+by `cellcrawl verify --full`: {all} in all, of which {no} do not hold as written. Those come first,
+with the reason. How each was measured: [verification](verification.md).
 
 """
 
@@ -96,11 +96,12 @@ def claims_page(content: dict[str, Any]) -> str:
     rows = [row for row in content["results"] if row["part"].startswith(CLAIMS)]
     fallen = [row for row in rows if row["known_not_to_hold"]]
     body = [
-        [row["what"], row["where"], _with_note(row), row["known_not_to_hold"]] for row in fallen
+        [f"{row['what']} (*{row['where']}*)", _with_note(row), row["known_not_to_hold"]]
+        for row in fallen
     ]
     text = [_CLAIMS_HEAD.format(all=len(rows), no=len(fallen))]
     text += [f"## The {len(fallen)} that do not hold as written\n\n"]
-    text += [_markdown(["claim", "where", "measured", "why"], body), "\n"]
+    text += [_markdown(["claim", "measured", "why"], body), "\n"]
     text += ["## All claims\n\n"]
     every = [[row["what"], row["where"], "no" if row in fallen else "holds"] for row in rows]
     text += [_markdown(["claim", "where in the paper", "verdict"], every)]
