@@ -13,7 +13,9 @@ laws = ("printed", "consistent")
 cells = {law: cc.Parameters(r_on=25, zeta_1=600, elasticity=law) for law in laws}
 runs = {law: cc.simulate(cell, t_end=40, start=start) for law, cell in cells.items()}
 figure = cc.plot.time_series(runs, quantities=("tension", "area", "speed"))
-figure.axes[0].legend(frameon=False, loc="upper right", bbox_to_anchor=(1, 1.45), ncols=2)
+figure.axes[0].legend(
+    frameon=False, fontsize=7, loc="upper right", bbox_to_anchor=(1, 1.45), ncols=2
+)
 figure.savefig("10_tension_laws.png", dpi=110)
 
 # The breathing mode k = 0 in linear theory: it grows under the printed law alone.

@@ -24,7 +24,9 @@ figure = cc.plot.time_series(runs, quantities=("tension", "speed"))
 for ax in figure.axes:
     ax.axvline(30, color="grey", linewidth=0.7)
     ax.lines[0].set_linewidth(4)  # to be seen below the other
-figure.axes[0].legend(frameon=False, loc="upper right", bbox_to_anchor=(1, 1.45), ncols=2)
+figure.axes[0].legend(
+    frameon=False, fontsize=7, loc="upper right", bbox_to_anchor=(1, 1.45), ncols=2
+)
 figure.savefig("15_restart.png", dpi=130)
 
 different = sum(int((whole[name].values != resumed[name].values).sum()) for name in whole.data_vars)

@@ -16,7 +16,7 @@ runs = {
     for name, change in {"within 2 time units": slow, "at once": jump}.items()
 }
 figure = cc.plot.time_series(runs, quantities=("tension", "speed", "circularity"))
-figure.axes[0].legend(frameon=False, loc="upper right")
+figure.axes[0].legend(frameon=False, fontsize=7, loc="upper right")
 figure.savefig("30_history.png", dpi=130)
 
 late = {name: run.sel(time=slice(50, None)) for name, run in runs.items()}
