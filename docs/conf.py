@@ -30,7 +30,8 @@ copybutton_prompt_is_regexp = True
 
 html_theme = "furo"
 html_title = "cellcrawl"
-html_static_path: list[str] = []
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
 html_show_sourcelink = False
 
 # The live cell lies beside the pages, which hold it in frames

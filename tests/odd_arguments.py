@@ -294,6 +294,7 @@ def _calls(folder: Path) -> Iterator[Call]:
     # modes
     yield call(cc.classify, dataset=long, use_size=True)
     yield call(cc.classify_track, t=t, x=x, y=y, cell_radius=1.0, status="completed")
+    yield call(lambda used: cc.cite(used), "cellcrawl.cite", used=long)
     yield call(cc.modes.combine, results=[cc.classify(long)])
     yield call(cc.modes.is_long_enough, dataset=long)
     # one dimension

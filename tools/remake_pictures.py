@@ -75,6 +75,16 @@ def branches(work: Path) -> None:
     command("examples/branches.py", IMAGES / "branches")
 
 
+def model(work: Path) -> None:
+    """What explains the model: forces, stick and slip, the loop, a front that forms."""
+    command("tools/model_pictures.py")
+
+
+def gallery(work: Path) -> None:
+    """The scripts of the gallery, and the page that shows them."""
+    command("tools/gallery_page.py")
+
+
 def figures(work: Path) -> None:
     """The paper's figures."""
     folder = work / "reproduction"
@@ -152,6 +162,8 @@ STEPS = (
     Step("modes", ("benchmarks/results/[mc]*.png", "docs/images/[mc]*.png"), modes),
     Step("tracks", ("docs/images/trackmate*.png",), tracks),
     Step("cells", ("docs/images/three-cells.png", "docs/images/gallery/*.png"), cells),
+    Step("model", ("docs/images/model/*.png",), model),
+    Step("gallery", ("docs/images/scripts/*.png",), gallery),
     Step("temperature", ("docs/images/temperature/*.png",), temperature),
     Step("laws", ("docs/images/laws/*.png",), laws),
     Step("branches", ("docs/images/branches/*.png",), branches),

@@ -1,4 +1,4 @@
-"""Write docs/verification.md from the recorded verification.
+"""Write docs/verification.md and docs/claims.md from the recorded verification.
 
 cellcrawl verify --full --output DIR
 cp DIR/verification.json benchmarks/results
@@ -16,10 +16,11 @@ ROOT = Path(__file__).resolve().parent.parent
 
 
 def main() -> None:
-    """Write the page."""
+    """Write the pages."""
     record = ROOT / "benchmarks" / "results" / "verification.json"
     content = json.loads(record.read_text("utf-8"))
     (ROOT / "docs" / "verification.md").write_text(report.page(content), "utf-8")
+    (ROOT / "docs" / "claims.md").write_text(report.claims_page(content), "utf-8")
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from cellcrawl import plot as plot
     from cellcrawl import surroundings as surroundings
     from cellcrawl import sweeps as sweeps
+    from cellcrawl.citing import cite as cite
     from cellcrawl.curve import Curve as Curve
     from cellcrawl.errors import CellcrawlError as CellcrawlError
     from cellcrawl.errors import InputError as InputError
@@ -70,6 +71,7 @@ _HOMES = {
     "Scales": "parameters",
     "Schedule": "parameters",
     "StorageError": "errors",
+    "cite": "citing",
     "classify": "modes",
     "explore": "explorer",
     "classify_track": "modes",

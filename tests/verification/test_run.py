@@ -201,6 +201,7 @@ def test_the_page_in_the_documentation_is_that_of_the_recorded_run():
     assert content["status"] == "passed"
     assert content["full"]
     assert (root / "docs" / "verification.md").read_text("utf-8") == report.page(content)
+    assert (root / "docs" / "claims.md").read_text("utf-8") == report.claims_page(content)
 
 
 def test_the_recorded_run_has_every_check():

@@ -36,6 +36,7 @@ _COMMANDS: Final[dict[str, tuple[str, str]]] = {
     "info": ("info", "Say what a file holds."),
     "verify": ("verify", "Verify the package and the paper's claims."),
     "bench": ("bench", "Measure accuracy and speed on this machine."),
+    "cite": ("cite", "Say what to cite, for the package and for saved runs."),
     "completion": ("completion", "Print the shell completion script."),
 }
 

@@ -21,7 +21,7 @@ from cellcrawl.plot.kymograph import kymograph, kymographs
 from cellcrawl.plot.outlines import outlines
 from cellcrawl.plot.path import path, paths
 from cellcrawl.plot.stability import stability
-from cellcrawl.plot.style import styled
+from cellcrawl.plot.style import house_style, styled
 from cellcrawl.plot.summary import summary
 from cellcrawl.plot.time_series import time_series
 from cellcrawl.plot.tracks import compare_tracks, tracks
@@ -37,6 +37,7 @@ __all__ = [
     "dispersion",
     "flat_edge",
     "growth",
+    "house_style",
     "kymograph",
     "kymographs",
     "measure_map",

@@ -163,8 +163,25 @@ def colormap_for(usual: str, given: str | None = None) -> str:
     return checked_colormap(given) if given is not None else _chosen.get().colormap or usual
 
 
+@checked
 def house_style() -> Any:
-    """Return the settings of a new figure: the house's where the user has none."""
+    """Return the settings that pictures of this package have, for figures of your own.
+
+    Returns
+    -------
+    dict
+        Settings for ``matplotlib.rcParams``. What you have set there yourself is left out.
+
+    See Also
+    --------
+    styled : Change the look of all pictures for a while.
+
+    Examples
+    --------
+    >>> import matplotlib as mpl
+    >>> with mpl.rc_context(house_style()):
+    ...     pass  # draw
+    """
     users = {name for name in STYLE if mpl.rcParams[name] != mpl.rcParamsDefault[name]}
     size = mpl.rcParams["font.size"] if "font.size" in users else STYLE["font.size"]
     grown = float(size) / STYLE["font.size"]

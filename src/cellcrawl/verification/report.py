@@ -28,6 +28,15 @@ wrong.
 """
 
 
+_CLAIMS_HEAD: Final = """# The paper's claims
+
+Each statement of the paper (Chen, Saintillan & Rangamani 2023) that can be computed, measured anew
+by `cellcrawl verify --full`: {all} in all, of which {no} do not hold as written. Those come first,
+with the reason. How each was measured: [verification](verification.md).
+
+"""
+
+
 def record(
     outcomes: Sequence[Outcome], *, full: bool, complete: bool, seconds: float
 ) -> dict[str, Any]:
@@ -73,11 +82,29 @@ def summary(content: dict[str, Any]) -> str:
 def page(content: dict[str, Any]) -> str:
     """Return the page of the documentation for a verification's record."""
     text = [_HEAD, f"**{_sentence(summary(content))}** ", _machine(content), "\n\n"]
+    text += ["## In short\n\n", _overview(content), "\n"]
     for part, title in PARTS.items():
         rows = [row for row in content["results"] if row["part"] == part]
         if rows:
             text += [f"## {title}\n\n", _claims(rows) if part.startswith(CLAIMS) else _table(rows)]
             text.append("\n")
+    return "".join(text).rstrip() + "\n"
+
+
+def claims_page(content: dict[str, Any]) -> str:
+    """Return the page of the documentation on the paper's claims: what does not hold, then all."""
+    rows = [row for row in content["results"] if row["part"].startswith(CLAIMS)]
+    fallen = [row for row in rows if row["known_not_to_hold"]]
+    body = [
+        [f"{row['what']} (*{row['where']}*)", _with_note(row), row["known_not_to_hold"]]
+        for row in fallen
+    ]
+    text = [_CLAIMS_HEAD.format(all=len(rows), no=len(fallen))]
+    text += [f"## The {len(fallen)} that do not hold as written\n\n"]
+    text += [_markdown(["claim", "measured", "why"], body), "\n"]
+    text += ["## All claims\n\n"]
+    every = [[row["what"], row["where"], "no" if row in fallen else "holds"] for row in rows]
+    text += [_markdown(["claim", "where in the paper", "verdict"], every)]
     return "".join(text).rstrip() + "\n"
 
 
@@ -125,6 +152,17 @@ def _sentence(text: str) -> str:
 def _machine(content: dict[str, Any]) -> str:
     version = "Long version" if content["full"] else "Short version"
     return f"{version}; {machine.describe(content['machine'])}."
+
+
+def _overview(content: dict[str, Any]) -> str:
+    """Return a table with a line for each part: how much of it holds."""
+    body = []
+    for part, title in PARTS.items():
+        verdicts = [row["verdict"] for row in content["results"] if row["part"] == part]
+        if verdicts:
+            counts = [str(verdicts.count(one)) for one in (HOLDS, AS_DOCUMENTED, FAILS)]
+            body.append([title, *counts])
+    return _markdown(["part", "hold", "do not hold as documented", "fail"], body)
 
 
 def _table(rows: list[dict[str, Any]]) -> str:
