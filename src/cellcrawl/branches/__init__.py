@@ -9,6 +9,15 @@ from cellcrawl.branches.branch import Branch
 from cellcrawl.branches.circle import circle, from_circle, onset_slope, onsets
 from cellcrawl.branches.continuation import ENDS, continue_in
 from cellcrawl.branches.curves import CURVE_ENDS, PointCurve, curve_of
+from cellcrawl.branches.orbit import Orbit, orbit
+from cellcrawl.branches.orbit_branch import (
+    ORBIT_ENDS,
+    ORBIT_MEANINGS,
+    OrbitBranch,
+    OrbitPoint,
+    continue_orbit,
+)
+from cellcrawl.branches.orbit_storage import open_orbits, resume_orbits
 from cellcrawl.branches.points import MEANINGS, SpecialPoint
 from cellcrawl.branches.setting import Setting
 from cellcrawl.branches.starting import from_run, gliding, turning
@@ -20,7 +29,12 @@ __all__ = [
     "CURVE_ENDS",
     "ENDS",
     "MEANINGS",
+    "ORBIT_ENDS",
+    "ORBIT_MEANINGS",
     "Branch",
+    "Orbit",
+    "OrbitBranch",
+    "OrbitPoint",
     "PointCurve",
     "Setting",
     "SpecialPoint",
@@ -28,6 +42,7 @@ __all__ = [
     "branch_off",
     "circle",
     "continue_in",
+    "continue_orbit",
     "curve_of",
     "from_circle",
     "from_run",
@@ -35,6 +50,9 @@ __all__ = [
     "onset_slope",
     "onsets",
     "open_branch",
+    "open_orbits",
+    "orbit",
     "resume_branch",
+    "resume_orbits",
     "turning",
 ]

@@ -231,7 +231,7 @@ class Flow:
         out = self.rates(state)
         h = 1e-5
         ahead, behind = self.shape_of(state + h * out).shape, self.shape_of(state - h * out).shape
-        return (ahead - behind) / (2.0 * h)
+        return np.asarray((ahead - behind) / (2.0 * h))
 
     def cell(self, state: np.ndarray, nodes: int) -> CellState:
         """Return a state as a cell at some even nodes."""

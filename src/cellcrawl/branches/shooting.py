@@ -193,9 +193,12 @@ def close(
         moved = back.careful(given, period, steps)
         miss = moved.shape - given
         before, size = size, fine.norm(miss)
-        if size < SETTLED and (border is None or _on_border(
-            border, shape, start_shape, period - start_period, parameter - start_parameter
-        )):
+        if size < SETTLED and (
+            border is None
+            or _on_border(
+                border, shape, start_shape, period - start_period, parameter - start_parameter
+            )
+        ):
             wanted = _enough_nodes(fine, given, period, steps)
             if nodes is None and wanted > count:
                 count = wanted
