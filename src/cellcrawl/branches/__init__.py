@@ -9,6 +9,12 @@ from cellcrawl.branches.branch import Branch
 from cellcrawl.branches.circle import circle, from_circle, onset_slope, onsets
 from cellcrawl.branches.continuation import ENDS, continue_in
 from cellcrawl.branches.curves import CURVE_ENDS, PointCurve, curve_of
+from cellcrawl.branches.lyapunov import (
+    LABELS,
+    LyapunovExponent,
+    lyapunov_exponent,
+    lyapunov_map,
+)
 from cellcrawl.branches.orbit import Orbit, orbit
 from cellcrawl.branches.orbit_branch import (
     ORBIT_ENDS,
@@ -28,10 +34,12 @@ from cellcrawl.branches.switching import branch_off
 __all__ = [
     "CURVE_ENDS",
     "ENDS",
+    "LABELS",
     "MEANINGS",
     "ORBIT_ENDS",
     "ORBIT_MEANINGS",
     "Branch",
+    "LyapunovExponent",
     "Orbit",
     "OrbitBranch",
     "OrbitPoint",
@@ -47,6 +55,8 @@ __all__ = [
     "from_circle",
     "from_run",
     "gliding",
+    "lyapunov_exponent",
+    "lyapunov_map",
     "onset_slope",
     "onsets",
     "open_branch",
