@@ -14,7 +14,7 @@ from cellcrawl.arguments import checked
 from cellcrawl.branches.flow import Flow
 from cellcrawl.branches.orbit import Orbit, nodes_or_none
 from cellcrawl.branches.setting import bounds_of
-from cellcrawl.branches.shooting import COARSE, Border, close, scaled, unscaled
+from cellcrawl.branches.shooting import COARSE, Border, answer, close, scaled, unscaled
 from cellcrawl.branches.system import NotFound
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import Parameters
@@ -228,8 +228,11 @@ def continue_orbit(
         raise InputError(f"the orbit has {name} = {value:g} already: give another value to go to")
     branch = OrbitBranch(name, to, [start], spectra=spectra)
     branch.nodes = nodes_or_none(nodes)
-    tangent = np.zeros(2 * COARSE + 3)
-    tangent[-1] = math.copysign(abs(value), to - value)
+    change, longer = on_one_thread(answer)(
+        start.setting, name, start.reflected, coarse_shape(start), start.period, start.basis
+    )
+    tangent = np.concatenate([change, [longer, 1.0]])
+    tangent *= math.copysign(1.0, to - value) / _length(tangent, _weights(start, name))
     walker = OrbitWalker(tangent, min(_FIRST, largest))
     return walk(branch, walker, count, largest, output, overwrite)
 

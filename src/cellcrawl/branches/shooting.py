@@ -285,6 +285,16 @@ def _step(
     return v @ solution[:count] + rest, float(solution[count]), shift
 
 
+def answer(
+    setting: Setting, name: str, reflected: bool, shape: np.ndarray, period: float, basis: Basis
+) -> tuple[np.ndarray, float]:
+    """Return how an orbit's shape (coarse nodes, scaled) and period answer to a parameter."""
+    flow = Flow(setting, COARSE)
+    slope = _slope(setting, name, reflected, shape, period)
+    change, longer, _ = _step(flow, shape, basis, _unit_pace(flow, shape), slope, None, None, 0.0)
+    return change, longer
+
+
 def _off_border(
     border: Border, shape: np.ndarray, start: np.ndarray, longer: float, shift: float
 ) -> float:
