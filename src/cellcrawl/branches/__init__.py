@@ -5,6 +5,7 @@ of the first node. `from_run` polishes a run's end into one, `gliding` and `turn
 nothing, `continue_in` follows it as a parameter changes and names the points on the way.
 """
 
+from cellcrawl.branches.basins import BasinShare, Swollen, Threshold, basins, threshold_kick
 from cellcrawl.branches.branch import Branch
 from cellcrawl.branches.circle import circle, from_circle, onset_slope, onsets
 from cellcrawl.branches.continuation import ENDS, continue_in
@@ -38,6 +39,7 @@ __all__ = [
     "MEANINGS",
     "ORBIT_ENDS",
     "ORBIT_MEANINGS",
+    "BasinShare",
     "Branch",
     "LyapunovExponent",
     "Orbit",
@@ -47,6 +49,9 @@ __all__ = [
     "Setting",
     "SpecialPoint",
     "SteadyState",
+    "Swollen",
+    "Threshold",
+    "basins",
     "branch_off",
     "circle",
     "continue_in",
@@ -64,5 +69,6 @@ __all__ = [
     "orbit",
     "resume_branch",
     "resume_orbits",
+    "threshold_kick",
     "turning",
 ]
