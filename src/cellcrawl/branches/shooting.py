@@ -29,6 +29,7 @@ SETTLED: Final = 1e-8
 _MOST_STEPS = 16
 _TAIL = 3e-6  # share of the shortest waves that nodes may leave
 _LONGEST = 0.3
+_PASSES = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,24 +139,38 @@ class Border(NamedTuple):
     weight: float
     """Of the parameter's square."""
 
+    def across(self, change: np.ndarray, longer: float, shift: float) -> float:
+        """Return how far a change of shape, period and parameter goes along the tangent."""
+        part = float(self.shape @ change) + self.period * longer
+        return part + self.weight * self.value * shift
 
-def lasting(setting: Setting, reflected: bool, shape: np.ndarray, period: float) -> Basis:
-    """Return the changes that last over a period, from quick flights on the coarse nodes."""
+
+def _linear(
+    setting: Setting, reflected: bool, shape: np.ndarray, period: float
+) -> Callable[[np.ndarray], np.ndarray]:
+    """Return the derivative of the return, on the coarse nodes, scaled, from quick flights."""
     flow = Flow(setting, COARSE)
     back = Return(flow, reflected)
     fastest = flow.stiffness(shape)
     home = back.quick(shape, period, fastest)
-    pace = scaled(flow.pace(shape))
-    pace = pace / np.linalg.norm(pace)
 
     def apply(vector: np.ndarray) -> np.ndarray:
-        there = back.quick(shape + _SMALL * unscaled(vector), period, fastest)
-        return scaled((there - home) / _SMALL)
+        size = float(np.linalg.norm(vector))
+        if size == 0.0:
+            return vector
+        there = back.quick(shape + _SMALL / size * unscaled(vector), period, fastest)
+        return scaled((there - home) * (size / _SMALL))
 
+    return apply
+
+
+def lasting(setting: Setting, reflected: bool, shape: np.ndarray, period: float) -> Basis:
+    """Return the changes that last over a period, from quick flights on the coarse nodes."""
+    apply = _linear(setting, reflected, shape, period)
     waves = np.arange(1, COARSE + 1)
     rough = np.cos(1.7 * waves**1.5)
     first = apply(scaled(np.concatenate([0.3 * rough, 0.1 * rough[::-1], [0.1]])))
-    return arnoldi(apply, pace, first, _BASIS)
+    return arnoldi(apply, _unit_pace(Flow(setting, COARSE), shape), first, _BASIS)
 
 
 def close(
@@ -185,8 +200,7 @@ def close(
     if basis is None:
         basis = lasting(setting, reflected, shape, period)
     steps = fine.steps_for([given], period)
-    pace = _unit_pace(flow, shape)
-    slope = None if border is None else _slope(setting, border.name, reflected, shape, period)
+    by: tuple[np.ndarray, float] | None = None
     size, worse = math.inf, 0
     for _ in range(_MOST_STEPS):
         back = Return(fine, reflected)
@@ -218,16 +232,20 @@ def close(
             if worse > 3 or (size > 3.0 * before and fresh):
                 break
             basis, fresh = lasting(setting, reflected, shape, period), True
-            pace = _unit_pace(flow, shape)
+            by = None
         coarse_miss = miss if count == COARSE else fine.resampled(miss, COARSE)
-        off = 0.0
+        apply = _linear(setting, reflected, shape, period)
+        change, longer = _answer(flow, shape, basis, apply, scaled(coarse_miss))
+        shift = 0.0
         if border is not None:
+            if by is None:
+                by = answer(setting, border.name, reflected, shape, period, basis)
             off = _off_border(
                 border, shape, start_shape, period - start_period, parameter - start_parameter
             )
-        change, longer, shift = _step(
-            flow, shape, basis, pace, scaled(coarse_miss), slope, border, off
-        )
+            off += border.across(change, longer, 0.0)
+            shift = -off / border.across(by[0], by[1], 1.0)
+            change, longer = change + shift * by[0], longer + shift * by[1]
         shorter = min(1.0, _LONGEST / max(float(np.linalg.norm(change)), 1e-300))
         step = shorter * unscaled(change)
         fine_step = step if count == COARSE else flow.resampled(step, count)
@@ -244,45 +262,34 @@ def close(
     raise NotFound(f"Newton's method did not close the orbit (it misses by {size:.2g})")
 
 
-def _step(
+def _answer(
     flow: Flow,
     shape: np.ndarray,
     basis: Basis,
-    pace: np.ndarray,
-    miss: np.ndarray,
-    slope: np.ndarray | None,
-    border: Border | None,
-    off: float,
-) -> tuple[np.ndarray, float, float]:
-    """Solve ``(P' - 1) dz + f dT + P_p dp = -miss`` across the pace (and across a tangent)."""
+    apply: Callable[[np.ndarray], np.ndarray],
+    to: np.ndarray,
+) -> tuple[np.ndarray, float]:
+    """Solve ``(P' - 1) dz + f dT = -to`` across the pace ``f``.
+
+    What is outside the basis is gone after a return, but has moved what is inside: it is flown.
+    """
     v, count = basis.vectors, basis.along.size
     rate = scaled(flow.pace(shape))
-    columns = [rate] if slope is None else [rate, slope]
-    size = count + len(columns)
-    matrix, right = np.zeros((size, size)), np.zeros(size)
+    pace = rate / np.linalg.norm(rate)
+    matrix = np.zeros((count + 1, count + 1))
     matrix[:count, :count] = basis.matrix - np.eye(count)
     matrix[count, :count] = basis.along
-    for k, column in enumerate(columns):
-        matrix[:count, count + k] = v.T @ column
-        matrix[count, count + k] = pace @ column
-    right[:count], right[count] = -(v.T @ miss), -(pace @ miss)
-    if border is not None:
-        assert slope is not None
-        lost = slope - v @ (v.T @ slope) - (pace @ slope) * pace
-        rate_lost = rate - v @ (v.T @ rate) - (pace @ rate) * pace
-        miss_lost = miss - v @ (v.T @ miss) - (pace @ miss) * pace
-        matrix[-1, :count] = border.shape @ v
-        matrix[-1, count] = border.period + border.shape @ rate_lost
-        matrix[-1, count + 1] = border.weight * border.value + border.shape @ lost
-        right[-1] = -off - border.shape @ miss_lost
-    solution = np.linalg.solve(matrix, right)
-    rest = miss + sum(
-        (part * column for part, column in zip(solution[count:], columns, strict=True)),
-        np.zeros_like(miss),
-    )
-    rest = rest - v @ (v.T @ rest) - (pace @ rest) * pace
-    shift = float(solution[count + 1]) if slope is not None else 0.0
-    return v @ solution[:count] + rest, float(solution[count]), shift
+    matrix[:count, count], matrix[count, count] = v.T @ rate, pace @ rate
+
+    def outside(vector: np.ndarray) -> np.ndarray:
+        return np.asarray(vector - v @ (v.T @ vector) - (pace @ vector) * pace)
+
+    lost = outside(to)
+    for _ in range(_PASSES):
+        moved = to + apply(lost)
+        solution = np.linalg.solve(matrix, -np.append(v.T @ moved, pace @ moved))
+        lost = outside(moved + solution[count] * rate)
+    return v @ solution[:count] + lost, float(solution[count])
 
 
 def answer(
@@ -291,15 +298,14 @@ def answer(
     """Return how an orbit's shape (coarse nodes, scaled) and period answer to a parameter."""
     flow = Flow(setting, COARSE)
     slope = _slope(setting, name, reflected, shape, period)
-    change, longer, _ = _step(flow, shape, basis, _unit_pace(flow, shape), slope, None, None, 0.0)
-    return change, longer
+    apply = _linear(setting, reflected, shape, period)
+    return _answer(flow, shape, basis, apply, slope)
 
 
 def _off_border(
     border: Border, shape: np.ndarray, start: np.ndarray, longer: float, shift: float
 ) -> float:
-    part = float(border.shape @ scaled(shape - start))
-    return part + border.period * longer + border.weight * border.value * shift
+    return border.across(scaled(shape - start), longer, shift)
 
 
 def _on_border(
