@@ -158,13 +158,15 @@ def polished(
     shift, lopsided = _front(n, w)
     mirror = lopsided < _MIRRORED
 
+    series = fourier.TrigonometricSeries(w + 1j * n)
+
     def sampler(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        angle = even_samples(w, at + shift) + shift - 0.5 * math.pi
-        bound = even_samples(n, at + shift)
+        there = series(at + shift)
+        angle, bound = there.real + shift - 0.5 * math.pi, there.imag
         if mirror:
-            back_w, back_n = even_samples(w, shift - at), even_samples(n, shift - at)
-            back = back_w + shift - 0.5 * math.pi
-            angle, bound = 0.5 * (angle - back), 0.5 * (bound + back_n)
+            mirrored = series(shift - at)
+            back = mirrored.real + shift - 0.5 * math.pi
+            angle, bound = 0.5 * (angle - back), 0.5 * (bound + mirrored.imag)
         return angle, bound
 
     mesh = choose(sampler, mirror)
