@@ -21,7 +21,8 @@ LAWS = {  # parameter, from the paper's value to another, and what it is
 }
 
 for name, (law, first, last, meaning) in LAWS.items():
-    gliding = cc.branches.from_circle(cell, laws=law).continue_in("r_on", 16.0)
+    middle = law.replace(**{name: 0.5 * (first + last)})  # curves go both ways from there
+    gliding = cc.branches.from_circle(cell, laws=middle).continue_in("r_on", 16.0)
     points = [gliding.points("pitchfork")[0], gliding.points("Hopf")[-1]]
     box = {"r_on": (5.0, 90.0), name: (min(first, last), max(first, last))}
     curves = [point.continue_in(name, within=box) for point in points]
