@@ -88,3 +88,8 @@ def test_what_is_no_orbit_is_refused_in_a_sentence():
         branches.orbit(run.assign_attrs(status="fragmented"))
     with pytest.raises(cc.InputError, match="multiple of 8"):
         branches.orbit(run, nodes=100)
+    breathing = cc.simulate(
+        cc.Parameters(r_on=26, zeta_1=600), t_end=4, start=branches.Swollen(0.1, front=1e-9)
+    )
+    with pytest.raises(cc.InputError, match="round at the end"):
+        branches.orbit(breathing)

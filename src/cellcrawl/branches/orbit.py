@@ -42,6 +42,7 @@ _SHORTEST = 0.5
 _NEAR, _NEAREST = 0.08, 0.3  # of the largest distance on the way
 _RESTS = 1e-3
 _FAR = 0.3
+_ROUND = 1e-5  # spread of the bound fraction along the edge
 _SAMPLES: Final = 96
 _FINER = 64
 _STRAIGHT = 1e-6  # rad a period
@@ -337,6 +338,11 @@ def orbit(run: xr.Dataset, *, rest_area: float | None = None, nodes: int | None 
     """
     nodes = nodes_or_none(nodes)
     setting, theta, n, length, sigma = last_of(run, "orbit", rest_area)
+    if np.ptp(n) < _ROUND:
+        raise InputError(
+            "the cell is round at the end of this run: it rests or breathes in place, and has no "
+            "front by which an orbit is held"
+        )
     flow = Flow(setting, COARSE)
     try:
         cell = CellState(Curve(theta, length).closed(), n, sigma)
