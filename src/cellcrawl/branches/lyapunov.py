@@ -290,13 +290,14 @@ def _label(
     if max(spreads) < _ROUND:
         return "breathing at rest"
     clear = max(error, _CLEAR)
-    if value > clear:
-        return "chaotic"
     wide = round(_WHILE / _PAUSE)
     smooth = np.convolve(course, np.full(wide, 1.0 / wide), mode="valid")
-    early = smooth[: max(smooth.size // 2, 1)]
-    if value < -clear and np.max(early) > _WILD and np.min(smooth[-wide:]) < _CLEAR:
+    third = max(smooth.size // 3, 1)
+    wild, calm = np.max(smooth[: 2 * third]) > _WILD, np.max(smooth[-third:]) < _WILD / 2.0
+    if wild and calm and value < _WILD:
         return "irregular for a while"
+    if value > clear:
+        return "chaotic"
     if value < -clear:
         return "periodic"
     return "quasi-periodic" if clear < 3.0 * _CLEAR else "undecided"

@@ -113,10 +113,6 @@ def growth_of_nearby_cells(full: bool) -> Iterator[Result]:
     found = lyapunov_exponent(Parameters(r_on=24.0, zeta_1=540.0), t_end=150.0)
     wanted = math.log(0.506) / 12.9350
     yield near("exponent of the rotation (24, 540)", found.value, wanted, 3e-3)
-    if full:
-        irregular = lyapunov_exponent(Parameters(r_on=38.0, zeta_1=580.0), t_end=1500.0)
-        least = irregular.value - irregular.error
-        yield at_most("0 less the exponent of (38, 580), at its lower end", -least, 0.0)
 
 
 def basins_side_by_side(full: bool) -> Iterator[Result]:
