@@ -269,8 +269,7 @@ def _batched(course: np.ndarray) -> tuple[float, float]:
         float(np.polyfit(time, _PAUSE * np.cumsum(course[k * size : (k + 1) * size]), 1)[0])
         for k in range(_BATCHES)
     ]
-    whole = np.polyfit(_PAUSE * np.arange(course.size), _PAUSE * np.cumsum(course), 1)[0]
-    return float(whole), float(_T95 * np.std(slopes, ddof=1) / math.sqrt(_BATCHES))
+    return float(np.mean(slopes)), float(_T95 * np.std(slopes, ddof=1) / math.sqrt(_BATCHES))
 
 
 def _label(
