@@ -19,6 +19,7 @@ import numpy as np
 from cellcrawl.curve import fourier
 
 _NEWTON_STEPS = 60
+_ROUNDING = 1e-14  # an angle's, up to 2 pi: the step after is the last that does something
 
 
 class Operators(NamedTuple):
@@ -104,7 +105,7 @@ class Mesh:
         for _ in range(_NEWTON_STEPS):
             step = (self.at(alpha) - self.grid) / self.density(alpha)
             alpha = alpha - step
-            if np.max(np.abs(step)) < 1e-15:
+            if np.max(np.abs(step)) < _ROUNDING:
                 break
         return alpha
 

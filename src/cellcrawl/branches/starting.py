@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -61,13 +61,45 @@ def from_run(run: xr.Dataset, *, rest_area: float | None = None) -> SteadyState:
     >>> from_run(run).kind
     'gliding'
     """
+    end = last_of(run, "from_run", rest_area)
+    _refuse_unsteady(run)
+    setting, theta, n, length, sigma = end
+    found = polished(setting, theta, n, length, sigma)
+    size = abs(found.tension / sigma - 1.0), abs(found.length / length - 1.0)
+    if size[0] > _FAR_TENSION or size[1] > _FAR_SHAPE:
+        raise InputError(
+            f"this run is not near a steady state at its end: the nearest found has tension "
+            f"{found.tension:.6g} and length {found.length:.6g}, the run {sigma:.6g} and "
+            f"{length:.6g}; run longer"
+        )
+    return found
+
+
+class End(NamedTuple):
+    """The last record of a run at equal arclengths, and the setting it goes on in."""
+
+    setting: Setting
+    theta: np.ndarray
+    bound_fraction: np.ndarray
+    length: float
+    tension: float
+
+
+def last_of(run: xr.Dataset, asking: str, rest_area: float | None = None) -> End:
+    """Return the end of a run that states and orbits can begin from.
+
+    Raises
+    ------
+    InputError
+        For one with units or surroundings, or that has torn.
+    """
     records = records_with(run, *_NEEDED)
     if units_of(records) != DIMENSIONLESS:
-        raise InputError("from_run needs a run in the model's units")
+        raise InputError(f"{asking} needs a run in the model's units")
     status = records.attrs.get("status", "completed")
     if status not in ("completed", "interrupted", "running"):
         raise InputError(
-            f"this run ended as {status!r}, and there is no steady state at its end: take the part "
+            f"this run ended as {status!r}, and nothing can go on from its end: take the part "
             "before with .sel(time=slice(...)), or another run"
         )
     if "surroundings" in records.attrs:
@@ -82,7 +114,6 @@ def from_run(run: xr.Dataset, *, rest_area: float | None = None) -> SteadyState:
 
         parameters = Schedule(schedule).at(parameters, float(records.time[-1]))
     laws = as_law(decode_attribute(records, "laws")) if "laws" in records.attrs else PAPER
-    _refuse_unsteady(records)
     last = records[list(_NEEDED)].isel(time=-1)
     theta, n = last["theta"].values, last["bound_fraction"].values
     length, sigma = float(last["length"]), float(last["tension"])
@@ -93,15 +124,7 @@ def from_run(run: xr.Dataset, *, rest_area: float | None = None) -> SteadyState:
         if abs(rest_area / math.pi - 1.0) < _CIRCLE_AREA:
             rest_area = math.pi
     setting = Setting(parameters, laws, real_number("rest_area", rest_area, -1e3, 1e3))
-    found = polished(setting, theta, n, length, sigma)
-    size = abs(found.tension / sigma - 1.0), abs(found.length / length - 1.0)
-    if size[0] > _FAR_TENSION or size[1] > _FAR_SHAPE:
-        raise InputError(
-            f"this run is not near a steady state at its end: the nearest found has tension "
-            f"{found.tension:.6g} and length {found.length:.6g}, the run {sigma:.6g} and "
-            f"{length:.6g}; run longer"
-        )
-    return found
+    return End(setting, theta, n, length, sigma)
 
 
 def _refuse_unsteady(records: xr.Dataset) -> None:
@@ -135,13 +158,15 @@ def polished(
     shift, lopsided = _front(n, w)
     mirror = lopsided < _MIRRORED
 
+    series = fourier.TrigonometricSeries(w + 1j * n)
+
     def sampler(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        angle = even_samples(w, at + shift) + shift - 0.5 * math.pi
-        bound = even_samples(n, at + shift)
+        there = series(at + shift)
+        angle, bound = there.real + shift - 0.5 * math.pi, there.imag
         if mirror:
-            back_w, back_n = even_samples(w, shift - at), even_samples(n, shift - at)
-            back = back_w + shift - 0.5 * math.pi
-            angle, bound = 0.5 * (angle - back), 0.5 * (bound + back_n)
+            mirrored = series(shift - at)
+            back = mirrored.real + shift - 0.5 * math.pi
+            angle, bound = 0.5 * (angle - back), 0.5 * (bound + mirrored.imag)
         return angle, bound
 
     mesh = choose(sampler, mirror)

@@ -17,7 +17,6 @@ from cellcrawl.branches.setting import Setting
 from cellcrawl.branches.spectrum import Block, blocks, ordered, unstable_count
 from cellcrawl.branches.system import Root, System
 from cellcrawl.curve import Curve
-from cellcrawl.data import FIELDS
 from cellcrawl.parameters import Parameters
 from cellcrawl.starts.base import CellState
 from cellcrawl.validation import real_number, whole_number
@@ -258,19 +257,10 @@ class SteadyState:
 
     def record(self, nodes: int) -> dict[str, np.ndarray | float]:
         """Return the fields of the run contract at equal arclengths."""
+        from cellcrawl.branches.records import record_of
+
         cell = self.state(self.parameters, nodes)
-        guess = np.full(nodes, float(self._rates.at.phi.mean()))
-        curve, n, sigma = cell.curve, cell.bound_fraction, cell.tension
-        at = self.setting.pointwise(guess, n, sigma, curve.curvature)
-        r, friction = self.setting.friction(at.phi, n)
-        points, (x, y) = curve.points, curve.centroid
-        found: dict[str, np.ndarray | float] = {
-            "x": points[:, 0], "y": points[:, 1], "theta": curve.theta,
-            "curvature": curve.curvature, "bound_fraction": n, "off_rate": r,
-            "normal_velocity": at.speed, "friction": friction, "tension": sigma,
-            "length": curve.length, "area": curve.area, "centroid_x": x, "centroid_y": y,
-        }  # fmt: skip
-        return {name: found[name] for name in FIELDS}
+        return record_of(self.setting, cell, float(self._rates.at.phi.mean()))
 
     @checked
     def perturbed(self, index: int = 0, amplitude: float = 1e-4, phase: float = 0.0) -> CellState:

@@ -111,18 +111,25 @@ def write(branch: Branch, walker: Walker, path: Path) -> None:
     arrays: dict[str, np.ndarray] = {
         "value": np.array([s.setting.value(branch.name) for s in everyone]),
         "tangent": walker.tangent,
-        **_ragged("unknowns", [s.unknowns for s in everyone]),
-        **_ragged("phi", [s.phi for s in everyone]),
-        **_complex("vector", vectors),
+        **ragged("unknowns", [s.unknowns for s in everyone]),
+        **ragged("phi", [s.phi for s in everyone]),
+        **complex_arrays("vector", vectors),
     }
     if branch.spectra:
         for k, symmetry in enumerate(header["symmetries"]):
             values = [s.eigenvalues_by_symmetry[symmetry] for s in branch.states]
-            arrays |= _complex(f"eigenvalues_{k}", values)
-        arrays |= _complex("neutral", [s.neutral_eigenvalues for s in branch.states])
+            arrays |= complex_arrays(f"eigenvalues_{k}", values)
+        arrays |= complex_arrays("neutral", [s.neutral_eigenvalues for s in branch.states])
+    write_arrays(path, KIND, SCHEMA, header, arrays)
+
+
+def write_arrays(
+    path: Path, kind: str, schema: int, header: dict[str, Any], arrays: dict[str, np.ndarray]
+) -> None:
+    """Write arrays and a header with a checksum, in the place of what is there once all is done."""
     attributes: dict[str, Any] = {
-        "kind": KIND,
-        "branch_schema": SCHEMA,
+        "kind": kind,
+        "branch_schema": schema,
         "cellcrawl_version": package_version(),
         "branch": json.dumps(header),
     }
@@ -209,7 +216,7 @@ def _read(path: Path) -> tuple[Branch, Walker]:
     base = Setting(
         Parameters.from_dict(header["parameters"]), as_law(header["laws"]), header["rest_area"]
     )
-    unknowns, phis = _parts(arrays, "unknowns"), _parts(arrays, "phi")
+    unknowns, phis = parts_of(arrays, "unknowns"), parts_of(arrays, "phi")
     states = [
         SteadyState(
             base.replace(name, float(value)),
@@ -223,16 +230,16 @@ def _read(path: Path) -> tuple[Branch, Walker]:
     ]
     count = len(states) - len(header["points"]) - 1
     if header["spectra"]:
-        neutral = _complex_parts(arrays, "neutral")
+        neutral = complex_parts(arrays, "neutral")
         for k, symmetry in enumerate(header["symmetries"]):
-            found = _complex_parts(arrays, f"eigenvalues_{k}")
+            found = complex_parts(arrays, f"eigenvalues_{k}")
             for state, values in zip(states, found, strict=False):
                 state._spectrum.setdefault("eigenvalues", {})[symmetry] = values
         for state, values in zip(states, neutral, strict=False):
             state._spectrum["neutral"] = values
     branch = Branch(name, header["to"], states[:count], spectra=header["spectra"])
     branch.status, branch.message = header["status"], header["message"]
-    vectors = iter(_complex_parts(arrays, "vector"))
+    vectors = iter(complex_parts(arrays, "vector"))
     for point, state in zip(header["points"], states[count:-1], strict=True):
         vector = next(vectors) if point.pop("has_vector") else None
         branch.special_points.append(SpecialPoint(name=name, state=state, vector=vector, **point))
@@ -243,23 +250,27 @@ def _read(path: Path) -> tuple[Branch, Walker]:
     return branch, walker
 
 
-def _ragged(name: str, parts: Sequence[np.ndarray]) -> dict[str, np.ndarray]:
+def ragged(name: str, parts: Sequence[np.ndarray]) -> dict[str, np.ndarray]:
+    """Return arrays of different sizes as one, and their sizes."""
     sizes = np.array([part.size for part in parts], dtype=np.int64)
     return {name: np.concatenate([np.zeros(0), *parts]), f"{name}_sizes": sizes}
 
 
-def _complex(name: str, parts: Sequence[np.ndarray]) -> dict[str, np.ndarray]:
-    real = _ragged(f"{name}_real", [np.asarray(part.real) for part in parts])
+def complex_arrays(name: str, parts: Sequence[np.ndarray]) -> dict[str, np.ndarray]:
+    """Return complex arrays of different sizes as real ones."""
+    real = ragged(f"{name}_real", [np.asarray(part.real) for part in parts])
     imaginary = [np.asarray(part.imag, dtype=float) for part in parts]
     return {**real, f"{name}_imag": np.concatenate([np.zeros(0), *imaginary])}
 
 
-def _parts(arrays: Mapping[str, np.ndarray], name: str) -> list[np.ndarray]:
+def parts_of(arrays: Mapping[str, np.ndarray], name: str) -> list[np.ndarray]:
+    """Return what `ragged` made one array of."""
     ends = np.cumsum(arrays[f"{name}_sizes"])
     return np.split(arrays[name], ends[:-1]) if ends.size else []
 
 
-def _complex_parts(arrays: Mapping[str, np.ndarray], name: str) -> list[np.ndarray]:
+def complex_parts(arrays: Mapping[str, np.ndarray], name: str) -> list[np.ndarray]:
+    """Return what `complex_arrays` made real."""
     sizes = arrays[f"{name}_real_sizes"]
     values = arrays[f"{name}_real"] + 1j * arrays[f"{name}_imag"]
     return np.split(values, np.cumsum(sizes)[:-1]) if sizes.size else []

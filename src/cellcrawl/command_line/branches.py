@@ -21,11 +21,14 @@ from cellcrawl.errors import InputError
 from cellcrawl.parameters import Parameters
 
 if TYPE_CHECKING:
-    from cellcrawl.branches import Branch, PointCurve, SpecialPoint
+    from cellcrawl.branches import Branch, OrbitBranch, PointCurve, SpecialPoint
 
 _USUAL = Parameters(zeta_1=560.0)
 _COLUMNS = ("kind", "symmetry", "r_on", "zeta_1", "frequency", "speed", "turning_rate", "tension")
 _GLIDING, _TURNING = "gliding", "turning"
+_PICTURES = (("speed", "branches"), ("turning_rate", "turning-rate"), ("tension", "tension"))
+_SETTLED = 150.0  # time after which a run is on its orbit
+_NODES, _MOST = 256, 12
 
 
 @click.command()
@@ -39,6 +42,11 @@ _GLIDING, _TURNING = "gliding", "turning"
     "--to", type=float, default=10.0, show_default=True, metavar="NUMBER", help="Last r_on."
 )
 @click.option("--turning", is_flag=True, help="Follow turning cells too, from their pitchfork.")
+@click.option(
+    "--orbits",
+    metavar="R1,R2,...",
+    help="Follow zigzags and rotations too, from runs at these r_on, both ways.",
+)
 @click.option("--curves", is_flag=True, help="Follow each special point over r_on and zeta_1 too.")
 @click.option(
     "--output",
@@ -56,6 +64,7 @@ def branches(
     several: str | None,
     to: float,
     turning: bool,
+    orbits: str | None,
     curves: bool,
     output: Path,
     overwrite: bool,
@@ -73,6 +82,7 @@ def branches(
     Examples
       cellcrawl branches
       cellcrawl branches --at-zeta-1 540,560,580,600 --output crossings
+      cellcrawl branches --turning --orbits 24,34 --zeta-1 600
       cellcrawl branches --turning --curves --elasticity consistent
     """
     from cellcrawl import plot
@@ -82,6 +92,8 @@ def branches(
     cells = [cell] if several is None else [cell.replace(zeta_1=v) for v in _numbers(several)]
     make_folder(output)
     made: list[Branch] = []
+    cycles: list[OrbitBranch] = []
+    places = [] if orbits is None else _numbers(orbits, "--orbits")
     points: list[SpecialPoint] = []
     try:
         for one in cells:
@@ -90,6 +102,7 @@ def branches(
             for branch in found:
                 points += branch.special_points
                 _tell(branch)
+            cycles += _orbits(one, places, output, overwrite)
         say(f"special points  {len(points)}")
         _write(points, output / "special_points.csv")
         lines = _curves(points, cell, to) if curves else []
@@ -97,20 +110,22 @@ def branches(
         say("stopped; what was followed is in the files")
         return CANCELLED
     with look.used():
-        axes = plot.branch(made)
-        save_picture(axes.figure, output / "branches.png", dpi)
+        for quantity, name in _PICTURES:
+            axes = plot.branch([*made, *cycles], quantity)
+            save_picture(axes.figure, output / f"{name}.png", dpi)
         if lines:
             save_picture(plot.boundaries(lines).figure, output / "curves.png", dpi)
-    if any(branch.status == "interrupted" for branch in made):
+    ended = [one.status for one in made] + [one.status for one in cycles]
+    if "interrupted" in ended:
         return CANCELLED
     return RUN_FAILED if any(branch.status == "no convergence" for branch in made) else 0
 
 
-def _numbers(text: str) -> list[float]:
+def _numbers(text: str, flag: str = "--at-zeta-1") -> list[float]:
     try:
         return [float(part) for part in text.split(",")]
     except ValueError:
-        raise InputError(f"--at-zeta-1 {text!r}: give numbers with commas, as in 560,600") from None
+        raise InputError(f"{flag} {text!r}: give numbers with commas, as in 560,600") from None
 
 
 def _followed(
@@ -133,6 +148,35 @@ def _followed(
             made.append(first.continue_in("r_on", aim, output=file(name), overwrite=overwrite))
         except InputError as error:
             say(f"turning cells from {fork.value:.6g}: {error}")
+    return made
+
+
+def _orbits(
+    cell: Parameters, places: list[float], output: Path, overwrite: bool
+) -> list[OrbitBranch]:
+    """Follow the orbits that runs at some r_on end on, both ways."""
+    from cellcrawl.branches import orbit
+    from cellcrawl.simulation import simulate
+
+    made = []
+    for place in places:
+        one = cell.replace(r_on=place)
+        run = simulate(one, _SETTLED, save_every=1.0)
+        try:
+            found = orbit(run, nodes=_NODES)
+        except InputError as error:
+            say(f"r_on = {place:g}: {error}")
+            continue
+        say(f"{found}, {'stable' if found.stable else 'unstable'}")
+        for way, aim in (("down", max(1.0, 0.6 * place)), ("up", min(200.0, 1.5 * place))):
+            file = output / f"{found.kind.replace(' ', '-')}-{cell.zeta_1:g}-{place:g}-{way}.nc"
+            branch = found.continue_in(
+                "r_on", aim, nodes=_NODES, most_orbits=_MOST, output=file, overwrite=overwrite
+            )
+            say(f"  {way}: {len(branch)} orbits; {branch.message}")
+            for point in branch.special_points:
+                say(f"  r_on {point.value:12.5f}  {point.kind}")
+            made.append(branch)
     return made
 
 

@@ -1,4 +1,4 @@
-"""Branches of steady cells in one parameter, and the boundaries they draw over two."""
+"""Branches of steady cells and orbits in one parameter, and the boundaries they draw over two."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from cellcrawl.arguments import checked
-from cellcrawl.branches import Branch, PointCurve
+from cellcrawl.branches import Branch, OrbitBranch, PointCurve
 from cellcrawl.branches.state import TURNING
 from cellcrawl.errors import InputError
 from cellcrawl.laws.law import PAPER
@@ -35,9 +35,14 @@ _POINTS: Final = {
     "pitchfork": ("^", "pitchfork"),
     "circle": ("D", "meets the circle"),
     "branch point": ("v", "branch point"),
+    "period doubling": ("P", "period doubling"),
+    "torus": ("*", "torus point"),
 }
+_EXTREMES: Final = {"tension": "tension_range", "circularity": "circularity_range"}
+_OF_ORBITS: Final = ("speed", "turning_rate", "tension", "circularity")
 _GLIDING = MODE_SYMBOLS["gliding"].colour
 _TURNING = MODE_SYMBOLS["rotational"].colour
+ORBIT = "#8c510a"  # orbits that come back without a mirror
 _CURVES: Final = {
     ("Hopf", "antisymmetric"): (MODE_SYMBOLS["zigzag"].colour, "-", "gliding begins to wobble"),
     ("Hopf", "symmetric"): ("#7a7a7a", "--", "gliding begins to breathe"),
@@ -50,20 +55,24 @@ _CURVES: Final = {
 
 @checked
 def branch(
-    branches: Branch | Sequence[Branch],
+    branches: Branch | OrbitBranch | Sequence[Branch | OrbitBranch],
     quantity: str = "speed",
     *,
     legend: bool = True,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw a measure of steady cells along branches: solid where stable, dotted where not.
+    """Draw a measure of steady cells and orbits along branches: solid where stable, else dotted.
+
+    Of orbits the tension and the circularity are drawn twice, at their least and their largest;
+    speed and turning rate are means over a period.
 
     Parameters
     ----------
-    branches : Branch or sequence of Branch
+    branches : Branch, OrbitBranch or sequence of them
         Followed in the same parameter.
     quantity : str
-        "speed", "turning_rate", "tension", "circularity", "length", "area" or "largest_curvature".
+        "speed", "turning_rate", "tension", "circularity", "length", "area" or "largest_curvature";
+        one of the first four where there are orbits.
     legend : bool
         Say what the markers of special points are.
     ax : Axes, optional
@@ -78,33 +87,66 @@ def branch(
     InputError
         For branches in different parameters, or another quantity.
     """
-    many = [branches] if isinstance(branches, Branch) else list(branches)
+    many = [branches] if isinstance(branches, Branch | OrbitBranch) else list(branches)
     if not many or len({one.name for one in many}) > 1:
         raise InputError("give one branch or more, all followed in the same parameter")
-    quantity = one_of("quantity", quantity, _QUANTITIES)
+    orbits = any(isinstance(one, OrbitBranch) for one in many)
+    quantity = one_of("quantity", quantity, _OF_ORBITS if orbits else _QUANTITIES)
     seen: dict[str, Any] = {}
     with axes_or_new(ax, COLUMN, 0.75 * COLUMN) as axes:
         for one in many:
-            values = np.array([abs(getattr(state, quantity)) for state in one])
-            colour = _TURNING if one[0].kind == TURNING else _GLIDING
-            stable = np.array([one.spectra and state.stable for state in one])
-            for first, last, solid in _pieces(stable):
-                axes.plot(
-                    one.values[first : last + 1], values[first : last + 1],
-                    color=colour, linestyle="-" if solid else ":", linewidth=1.4 if solid else 1.0,
-                )  # fmt: skip
-            for point in one.special_points:
-                marker, label = _POINTS[point.kind]
-                height = abs(getattr(point.state, quantity))
-                seen[label] = axes.plot(
-                    point.value, height, marker=marker, color=INK, markersize=4.0,
-                    markerfacecolor="white", linestyle="none", zorder=3,
-                )[0]  # fmt: skip
+            if isinstance(one, OrbitBranch):
+                _draw_orbits(axes, one, quantity, seen)
+            else:
+                _draw_states(axes, one, quantity, seen)
         axes.set_xlabel(_label(many[0].name))
         axes.set_ylabel(_QUANTITIES[quantity])
         if legend and seen:
             axes.legend(list(seen.values()), list(seen), fontsize="small")
     return axes
+
+
+def _draw_states(axes: Axes, one: Branch, quantity: str, seen: dict[str, Any]) -> None:
+    values = np.array([abs(getattr(state, quantity)) for state in one])
+    colour = _TURNING if one[0].kind == TURNING else _GLIDING
+    stable = np.array([one.spectra and state.stable for state in one])
+    _draw_line(axes, one.values, values, stable, colour)
+    for point in one.special_points:
+        height = abs(getattr(point.state, quantity))
+        _mark(axes, point.kind, point.value, height, seen)
+
+
+def _draw_orbits(axes: Axes, one: OrbitBranch, quantity: str, seen: dict[str, Any]) -> None:
+    colour = MODE_SYMBOLS["zigzag"].colour if one[0].reflected else ORBIT
+    stable = np.array([one.spectra and orbit.stable for orbit in one])
+    values = np.array([np.abs(_of_orbit(orbit, quantity)) for orbit in one])
+    for column in values.T:
+        _draw_line(axes, one.values, column, stable, colour)
+    for point in one.special_points:
+        for height in np.abs(_of_orbit(point.orbit, quantity)):
+            _mark(axes, point.kind, point.value, float(height), seen)
+
+
+def _of_orbit(orbit: Any, quantity: str) -> np.ndarray:
+    return np.atleast_1d(np.array(getattr(orbit, _EXTREMES.get(quantity, quantity)), dtype=float))
+
+
+def _draw_line(
+    axes: Axes, across: np.ndarray, values: np.ndarray, stable: np.ndarray, colour: Any
+) -> None:
+    for first, last, solid in _pieces(stable):
+        axes.plot(
+            across[first : last + 1], values[first : last + 1],
+            color=colour, linestyle="-" if solid else ":", linewidth=1.4 if solid else 1.0,
+        )  # fmt: skip
+
+
+def _mark(axes: Axes, kind: str, value: float, height: float, seen: dict[str, Any]) -> None:
+    marker, label = _POINTS[kind]
+    seen[label] = axes.plot(
+        value, height, marker=marker, color=INK, markersize=4.0, markerfacecolor="white",
+        linestyle="none", zorder=3,
+    )[0]  # fmt: skip
 
 
 @checked

@@ -1,4 +1,4 @@
-"""Steady cells and their branches: numbers of an independent code, theory, and time stepping."""
+"""Steady cells, orbits and branches: numbers of another code, theory, and time stepping."""
 
 from __future__ import annotations
 
@@ -8,7 +8,17 @@ from typing import Any, Final
 
 import numpy as np
 
-from cellcrawl.branches import circle, from_circle, gliding, onset_slope, onsets, turning
+from cellcrawl.branches import (
+    circle,
+    from_circle,
+    gliding,
+    lyapunov_exponent,
+    onset_slope,
+    onsets,
+    orbit,
+    threshold_kick,
+    turning,
+)
 from cellcrawl.linear import growth_rates
 from cellcrawl.parameters import Parameters
 from cellcrawl.simulation import simulate
@@ -72,6 +82,47 @@ def crossings(full: bool) -> Iterator[Result]:
         found = ends[0].value if ends else math.nan
         within = 1e-6 if elasticity == "printed" else 1e-4
         yield near(f"r_on where steady turning ends, {elasticity} law", found, wanted, within)
+
+
+def orbits(full: bool) -> Iterator[Result]:
+    """Zigzag and rotation as periodic orbits, against digits of an independent code."""
+    zigzag = orbit(_ended(26.0, 600.0))
+    yield near("period of the zigzag (26, 600)", zigzag.period, 8.78882, 5e-5)
+    yield near("its multiplier", float(zigzag.multipliers[0].real), -0.867, 5e-4)
+    yield near("multiplier of a shift in time", float(zigzag.neutral_multipliers[0]), 1.0, 1e-4)
+    rotation = orbit(_ended(24.0, 540.0))
+    yield near("period of the rotation (24, 540)", rotation.period, 12.9350, 5e-5)
+    yield near("turn in a period", abs(rotation.turn), 1.2225, 5e-5)
+    yield near("its multiplier", float(rotation.multipliers[0].real), -0.506, 5e-4)
+    yield near("its least tension", rotation.tension_range[0], 776.43, 5e-3)
+    if full:
+        branch = zigzag.continue_in("r_on", 27.6)
+        (fork,) = branch.points("pitchfork")
+        yield near("r_on where the zigzag (zeta_1 = 600) becomes lopsided", fork.value, 27.27, 0.02)
+        slower = orbit(_ended(24.0, 600.0))
+        yield near("period of the zigzag (24, 600)", slower.period, 11.32, 5e-3)
+
+
+def growth_of_nearby_cells(full: bool) -> Iterator[Result]:
+    """Lyapunov exponents against growth rates, multipliers, and an independent code."""
+    for r_on in (56.0, 54.0):
+        state = gliding(_HIGH.replace(r_on=r_on))
+        found = lyapunov_exponent(state.parameters, start=state, t_end=60.0)
+        wanted = float(state.eigenvalues[0].real)
+        yield near(f"exponent of the glider ({r_on:g}, 560)", found.value, wanted, 5e-3)
+    found = lyapunov_exponent(Parameters(r_on=24.0, zeta_1=540.0), t_end=150.0)
+    wanted = math.log(0.506) / 12.9350
+    yield near("exponent of the rotation (24, 540)", found.value, wanted, 3e-3)
+
+
+def basins_side_by_side(full: bool) -> Iterator[Result]:
+    """The kick between the round cell and the glider below the onset."""
+    found = threshold_kick(Parameters(r_on=11.5, zeta_1=600.0), within=0.02)
+    yield near("kick that makes (11.5, 600) glide for good", found.value, 0.0035, 0.0015)
+
+
+def _ended(r_on: float, zeta_1: float) -> Any:
+    return simulate(Parameters(r_on=r_on, zeta_1=zeta_1), 120.0, save_every=1.0)
 
 
 def _spectrum_error(parameters: Parameters) -> float:
