@@ -112,9 +112,7 @@ def posterior(references: list[Reference], summaries: np.ndarray) -> Samples:
     return Samples(*(np.concatenate(column) for column in zip(*found, strict=True)))
 
 
-def _weighted(
-    x: np.ndarray, y: np.ndarray, weight: np.ndarray, ridge: float = 1e-6
-) -> np.ndarray:
+def _weighted(x: np.ndarray, y: np.ndarray, weight: np.ndarray, ridge: float = 1e-6) -> np.ndarray:
     """Weighted least squares, coefficients of shape (column of x, column of y)."""
     keep = np.diag([0.0, *np.full(x.shape[1] - 1, ridge)])
     return np.asarray(np.linalg.solve((x.T * weight) @ x + keep, (x.T * weight) @ y))

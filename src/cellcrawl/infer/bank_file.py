@@ -76,10 +76,9 @@ def read_table(path: Path) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """
     if not path.is_file():
         raise InputError(f"there is no bank {path}: make one, as by cellcrawl bank --output {path}")
-    with contextlib.suppress(OSError):
-        with path.open("rb") as file:
-            if not file.read(8).startswith(b"\x89HDF"):
-                raise InputError(f"{path} is no bank: it is not a file of `cellcrawl bank`")
+    with contextlib.suppress(OSError), path.open("rb") as file:
+        if not file.read(8).startswith(b"\x89HDF"):
+            raise InputError(f"{path} is no bank: it is not a file of `cellcrawl bank`")
     with readable(path), h5py.File(path, "r") as file:
         text, seal = file.attrs.get("header"), file.attrs.get("seal")
         if not isinstance(text, str) or not isinstance(seal, str):

@@ -197,10 +197,7 @@ def _of_outlines(outlines: Outlines, name: str, wanted: int = 0) -> Cell:
     step = _even(f"cell {name}", np.array([one.t for one in chosen])) * time
     path = np.array([complex(*one.centroid) for one in chosen]) * length
     edge = np.array(
-        [
-            _complex(equally_spaced(one.xy - one.centroid, _TRACED)) * length
-            for one in chosen
-        ]
+        [_complex(equally_spaced(one.xy - one.centroid, _TRACED)) * length for one in chosen]
     )
     even = films.equal_arclength(edge)
     modes = films.modes_of_edge(even.real, even.imag)

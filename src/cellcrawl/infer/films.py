@@ -105,7 +105,5 @@ def equal_arclength(edge: np.ndarray, nodes: int = NODES) -> np.ndarray:
     result = np.empty((len(at), nodes), complex)
     for i, (place, points) in enumerate(zip(at, corners, strict=True)):
         along = place[-1] * np.arange(nodes) / nodes
-        result[i] = np.interp(along, place, points.real) + 1j * np.interp(
-            along, place, points.imag
-        )
+        result[i] = np.interp(along, place, points.real) + 1j * np.interp(along, place, points.imag)
     return result.reshape(*edge.shape[:-1], nodes)

@@ -146,9 +146,7 @@ def _fits(
     if not cells:
         raise InputError("there is no cell to fit")
     if one and len(cells) > 1:
-        raise InputError(
-            f"there are {len(cells)} cells: choose one, or fit them by fit_all"
-        )
+        raise InputError(f"there are {len(cells)} cells: choose one, or fit them by fit_all")
     cells, microscope = microscope_of(cells, bank, time_unit, length_unit, pixel, error)
     taught = trained(bank, microscope, looks, seed)
     estimate: Any = None

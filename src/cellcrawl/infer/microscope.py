@@ -167,7 +167,9 @@ def _seen(
 ) -> tuple[Films | None, np.ndarray, np.ndarray, np.ndarray, dict[str, int]]:
     count = block.runs.size
     random = np.random.default_rng((seed, again, int(block.runs[0])))
-    draws = {name: range_.value(random.random(count)) for name, range_ in microscope.unknown.items()}
+    draws = {
+        name: range_.value(random.random(count)) for name, range_ in microscope.unknown.items()
+    }
     part = np.column_stack(
         [r.part(draws[name]) for name, r in microscope.unknown.items()] or [np.empty((count, 0))]
     )

@@ -81,9 +81,7 @@ class Fit:
         """Return the fit with its alarm."""
         thought = trained.thought(summaries[None])
         away = float(trained.alarm.strangeness(thought, summaries[None])[0])
-        return cls(
-            cell, trained, summaries, samples, method, plain, away / trained.alarm.threshold
-        )
+        return cls(cell, trained, summaries, samples, method, plain, away / trained.alarm.threshold)
 
     @property
     def names(self) -> tuple[str, ...]:

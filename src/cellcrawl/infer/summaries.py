@@ -102,9 +102,7 @@ def _of_track(to: _Gathered, path: np.ndarray, step: float, lag: int) -> None:
     _series(to, "speed", "length/time", speed, step, lag, False)
     steps = np.diff(path, axis=1)
     for number in _lags(steps.shape[1]):
-        to.add(
-            f"velocity correlation at {number} frames", "", _correlation(steps, number), False
-        )
+        to.add(f"velocity correlation at {number} frames", "", _correlation(steps, number), False)
     turn = np.angle(velocity[:, lag:] * np.conj(velocity[:, :-lag])) / (lag * step)
     rms = np.sqrt((turn**2).mean(axis=1))
     to.add_log("rms turning rate", "rad/time", rms, False)
@@ -126,9 +124,7 @@ def _of_track(to: _Gathered, path: np.ndarray, step: float, lag: int) -> None:
     _spectrum(to, "turns", turn - turn.mean(axis=1, keepdims=True), step, False)
 
 
-def _of_outlines(
-    to: _Gathered, path: np.ndarray, modes: np.ndarray, step: float, lag: int
-) -> None:
+def _of_outlines(to: _Gathered, path: np.ndarray, modes: np.ndarray, step: float, lag: int) -> None:
     size = {k: np.abs(modes[..., films.MODES + k]) for k in _SHAPES}
     fine = np.sqrt((np.abs(modes[..., np.abs(films.WAVES) > 5]) ** 2).sum(axis=-1))
     area = math.pi * np.sum(films.WAVES * np.abs(modes) ** 2, axis=-1)
@@ -169,7 +165,9 @@ def _of_outlines(
             where = np.angle(normal) - heading[..., None]
             for m in range(5):
                 mean = (outward * np.cos(m * where)).mean(axis=(1, 2))
-                to.add(f"edge velocity, cos {m} of the angle to the front", "length/time", mean, True)
+                to.add(
+                    f"edge velocity, cos {m} of the angle to the front", "length/time", mean, True
+                )
             bent = 0.5 * (curvature[:, number:] + curvature[:, :-number])
             together = _together(outward, np.clip(bent, -20, 20))
             to.add("edge velocity with curvature", "", together, True)
@@ -235,7 +233,9 @@ def _series(
     rms = np.sqrt((pace**2).mean(axis=1))
     to.add_log(f"pace of {name}", "1/time", _ratio(rms, np.maximum(spread, _TINY)), outlines)
     centred = values - mean[:, None]
-    to.add(f"skewness of {name}", "", np.cbrt(_ratio((centred**3).mean(axis=1), spread**3)), outlines)
+    to.add(
+        f"skewness of {name}", "", np.cbrt(_ratio((centred**3).mean(axis=1), spread**3)), outlines
+    )
     for number in _lags(values.shape[1])[1:]:
         seen = _correlation(centred, number)
         to.add(f"{name}, correlation at {number} frames", "", seen, outlines)
@@ -255,7 +255,9 @@ def _spectrum(to: _Gathered, name: str, values: np.ndarray, step: float, outline
         inside = (frequency >= edges[band]) & (frequency < edges[band + 1])
         if inside.any():
             part = folded[:, inside].sum(axis=1) / total
-            to.add(f"{name}, power in band {band + 1} of {_BANDS}", "", np.log(part + 1e-4), outlines)
+            to.add(
+                f"{name}, power in band {band + 1} of {_BANDS}", "", np.log(part + 1e-4), outlines
+            )
     middle = np.exp((folded * np.log(frequency)).sum(axis=1) / total)
     to.add_log(f"middle frequency of {name}", "1/time", middle, outlines)
     to.add_log(f"peak frequency of {name}", "1/time", frequency[folded.argmax(axis=1)], outlines)

@@ -155,9 +155,7 @@ def calibrate(references: list[Reference], view: View, rows: np.ndarray) -> Cali
     return Calibration(view.names, view.part[rows], np.array(mean), np.array(rank))
 
 
-def _alarm(
-    view: View, rows: np.ndarray, aside: np.ndarray, references: list[Reference]
-) -> Alarm:
+def _alarm(view: View, rows: np.ndarray, aside: np.ndarray, references: list[Reference]) -> Alarm:
     """Learn what is foretold, on rows that the networks have not seen, and set the threshold."""
     scaling = Scaling.of(view.summaries[rows])
     expected = np.empty_like(view.part)
