@@ -3,6 +3,8 @@
 from cellcrawl.infer.bank import Bank, bank, open_bank
 from cellcrawl.infer.choice import Choice, choose
 from cellcrawl.infer.fitting import fit, fit_all
+from cellcrawl.infer.page import report
+from cellcrawl.infer.pictures import corner, foretold
 from cellcrawl.infer.population import Comparison, Group, compare, together
 from cellcrawl.infer.prior import PAPER_PRIOR, Prior, Range
 from cellcrawl.infer.result import Fit
@@ -19,8 +21,11 @@ __all__ = [
     "bank",
     "choose",
     "compare",
+    "corner",
     "fit",
     "fit_all",
+    "foretold",
     "open_bank",
+    "report",
     "together",
 ]

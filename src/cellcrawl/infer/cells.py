@@ -15,6 +15,7 @@ from cellcrawl.infer import films
 from cellcrawl.infer.summaries import FEWEST_FRAMES, Films
 from cellcrawl.microscopy import Observation, Outlines, Track, Tracks
 from cellcrawl.microscopy.columns import length_unit, time_unit
+from cellcrawl.microscopy.options import Reading
 from cellcrawl.microscopy.polygons import equally_spaced
 from cellcrawl.validation import shown
 
@@ -167,6 +168,9 @@ def _of_run(run: xr.Dataset) -> Cell:
         raise InputError("observed must be a run: a Dataset with its edge and centroid over time")
     time = np.asarray(run["time"].values, float)
     late = time >= films.TRANSIENT - 1e-9
+    steps = np.diff(time)
+    if steps.size > 1 and steps[-1] < (1.0 - _UNEVEN) * steps[-2]:
+        late[-1] = False  # the end of a run, or where it tore, is between two saved times
     if late.sum() < FEWEST_FRAMES:
         raise InputError(
             f"the run has {int(late.sum())} records after t = {films.TRANSIENT:g}, where its "
@@ -278,3 +282,13 @@ def _moving(cell: Cell) -> Cell:
             "cell tells nothing of its adhesions but that they hold it"
         )
     return cell
+
+
+def micrometres(pixel_size: Any) -> float | None:
+    """Return the size of a pixel as readers take it, such as "0.65 um", in µm."""
+    if pixel_size is None:
+        return None
+    reading = Reading.of(pixel_size=pixel_size)
+    if reading.pixel_size is None:
+        return None
+    return reading.pixel_size * _MICROMETRES.get(reading.length_units, 1.0)

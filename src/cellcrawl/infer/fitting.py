@@ -225,7 +225,7 @@ def _cut(cell: Cell, count: int) -> Cell:
 
 
 def _unit(name: str, given: Any, bank: Bank, known: float | None) -> float | Range | None:
-    """Return a unit as a number or a range: what was asked, else the model's own, else the bank's."""
+    """Return a unit: what was asked, else the model's own, else that of the bank's prior."""
     if given is None:
         return known if known is not None else bank.prior.ranges.get(name)
     if is_real(given):

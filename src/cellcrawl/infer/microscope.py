@@ -131,7 +131,7 @@ def look(
     numbers = np.arange(len(bank)) if which is None else np.asarray(which)
     unknown = microscope.unknown
     names = (*bank.prior.cell_names, *unknown)
-    ranges = tuple([*(bank.prior.ranges[n] for n in bank.prior.cell_names), *unknown.values()])
+    ranges = (*(bank.prior.ranges[n] for n in bank.prior.cell_names), *unknown.values())
     found: list[tuple[np.ndarray, ...]] = []
     outcomes: dict[str, int] = {}
     told: list[Summary] = []
@@ -167,9 +167,7 @@ def _seen(
 ) -> tuple[Films | None, np.ndarray, np.ndarray, np.ndarray, dict[str, int]]:
     count = block.runs.size
     random = np.random.default_rng((seed, again, int(block.runs[0])))
-    draws = {
-        name: range_.value(random.random(count)) for name, range_ in microscope.unknown.items()
-    }
+    draws = {name: r.value(random.random(count)) for name, r in microscope.unknown.items()}
     part = np.column_stack(
         [r.part(draws[name]) for name, r in microscope.unknown.items()] or [np.empty((count, 0))]
     )

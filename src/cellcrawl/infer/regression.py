@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -31,7 +32,8 @@ class Scaling(NamedTuple):
 
     def __call__(self, values: np.ndarray) -> np.ndarray:
         """Return scaled values, those far out clipped."""
-        return np.clip((values - self.middle) / self.spread, -_CLIP, _CLIP).astype(np.float32)
+        scaled = np.clip((values - self.middle) / self.spread, -_CLIP, _CLIP)
+        return np.asarray(scaled, np.float32)
 
 
 class Network(NamedTuple):
@@ -73,9 +75,8 @@ def train(values: np.ndarray, targets: np.ndarray, seed: int = 0) -> Network:
     left = (targets - offset - x @ linear).astype(np.float32)
     sizes = (x.shape[1], *_HIDDEN, targets.shape[1])
     weights: list[np.ndarray] = []
-    for below, above in zip(sizes[:-1], sizes[1:], strict=True):
-        last = above is sizes[-1] and len(weights) == 2 * len(_HIDDEN)
-        size = 0.0 if last else 1.0 / np.sqrt(below)
+    for layer, (below, above) in enumerate(pairwise(sizes)):
+        size = 0.0 if layer == len(_HIDDEN) else 1.0 / np.sqrt(below)
         weights.append((size * random.standard_normal((below, above))).astype(np.float32))
         weights.append(np.zeros(above, np.float32))
     _descend(weights, x, left, random)

@@ -1,4 +1,4 @@
-"""What a fit says: intervals, what the film does not tell, and whether the model makes such films."""
+"""What a fit says: intervals, what the film does not tell, whether the model makes such films."""
 
 from __future__ import annotations
 

@@ -165,9 +165,8 @@ def _of_outlines(to: _Gathered, path: np.ndarray, modes: np.ndarray, step: float
             where = np.angle(normal) - heading[..., None]
             for m in range(5):
                 mean = (outward * np.cos(m * where)).mean(axis=(1, 2))
-                to.add(
-                    f"edge velocity, cos {m} of the angle to the front", "length/time", mean, True
-                )
+                name = f"edge velocity, cos {m} of the angle to the front"
+                to.add(name, "length/time", mean, True)
             bent = 0.5 * (curvature[:, number:] + curvature[:, :-number])
             together = _together(outward, np.clip(bent, -20, 20))
             to.add("edge velocity with curvature", "", together, True)

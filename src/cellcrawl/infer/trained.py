@@ -178,7 +178,7 @@ def _alarm(view: View, rows: np.ndarray, aside: np.ndarray, references: list[Ref
 
 
 def _wide(scaling: Scaling, values: np.ndarray) -> np.ndarray:
-    return np.clip((values - scaling.middle) / scaling.spread, -_FAR, _FAR)
+    return np.asarray(np.clip((values - scaling.middle) / scaling.spread, -_FAR, _FAR))
 
 
 def _powers(thought: np.ndarray) -> np.ndarray:
