@@ -3,6 +3,7 @@
 from cellcrawl.infer.bank import Bank, bank, open_bank
 from cellcrawl.infer.choice import Choice, choose
 from cellcrawl.infer.fitting import fit, fit_all
+from cellcrawl.infer.neural import save_network
 from cellcrawl.infer.page import report
 from cellcrawl.infer.pictures import corner, foretold
 from cellcrawl.infer.population import Comparison, Group, compare, together
@@ -27,5 +28,6 @@ __all__ = [
     "foretold",
     "open_bank",
     "report",
+    "save_network",
     "together",
 ]

@@ -207,7 +207,22 @@ def _of_outlines(outlines: Outlines, name: str, wanted: int = 0) -> Cell:
     modes = films.modes_of_edge(even.real, even.imag)
     changed = sum(bool(one.changes) for one in chosen)
     notes = (f"{changed} outlines were changed when they were read",) if changed else ()
-    return _moving(Cell(name, step, path, modes, 0.0, model, notes))
+    pixel = _pixel_of(chosen[0].xy) * length
+    return _moving(Cell(name, step, path, modes, pixel, model, notes))
+
+
+def _pixel_of(xy: np.ndarray) -> float:
+    """Return the pixel that an outline traced along pixels shows, 0 for any other.
+
+    Such an outline passes through the middles of sides of pixels: its points are whole numbers of
+    half pixels apart.
+    """
+    steps = np.abs(np.diff(xy, axis=0)).ravel()
+    steps = steps[steps > 1e-9 * max(float(steps.max(initial=0.0)), 1e-300)]
+    if not steps.size:
+        return 0.0
+    half = steps / steps.min()
+    return float(2.0 * steps.min()) if np.abs(half - np.rint(half)).max() < 1e-3 else 0.0
 
 
 def _complex(xy: np.ndarray) -> np.ndarray:

@@ -33,7 +33,10 @@ table{border-collapse:collapse;width:100%}
 th,td{text-align:left;padding:.35rem .7rem .35rem 0;border-bottom:1px solid var(--line);
 vertical-align:top}
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap}
+td:first-child{min-width:8rem;overflow-wrap:normal}
 td small{color:var(--soft);display:block}
+@media(max-width:600px){td,th{font-size:.86rem;padding-right:.45rem}td.n,th.n{white-space:normal}
+td:first-child{min-width:6.4rem}.row img{width:100%}}
 img{max-width:100%;height:auto;background:#fff;border-radius:4px}
 .row{display:flex;flex-wrap:wrap;gap:.6rem}.row img{width:18rem}
 .corner{min-width:34rem;width:46rem}

@@ -11,6 +11,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 from cellcrawl.arguments import checked
 from cellcrawl.infer import films
@@ -47,6 +48,13 @@ def _in_house(function: F) -> F:
             return function(*args, **named)
 
     return cast(F, call)
+
+
+def _few_ticks(axis: Any) -> None:
+    """Label a logarithmic axis of a decade or so in plain numbers."""
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def _new(rows: int, columns: int, width: float, height: float) -> tuple[Figure, np.ndarray]:
@@ -95,6 +103,7 @@ def margin_picture(fit: Fit, name: str, truth: float | None = None) -> Figure:
     axis.set_xlim(edges[0], edges[-1])
     if range_.scale == "log":
         axis.set_xscale("log")
+        _few_ticks(axis.xaxis)
     unit = unit_of(name)
     axis.set_xlabel(f"{name} ({unit})" if unit else name)
     axis.set_yticks([])
@@ -139,8 +148,11 @@ def corner(fit: Fit) -> Figure:
                 )
                 if ranges[row].scale == "log":
                     axis.set_yscale("log")
+                    _few_ticks(axis.yaxis)
             if ranges[column].scale == "log":
                 axis.set_xscale("log")
+                _few_ticks(axis.xaxis)
+                axis.tick_params(axis="x", rotation=45)
             if row == count - 1:
                 axis.set_xlabel(fit.names[column])
             else:
@@ -265,6 +277,7 @@ def comparison_picture(comparison: Comparison) -> Figure:
                 axis.plot(x, found.value, ".", ms=2.5, color=colour)
         if range_.scale == "log":
             axis.set_yscale("log")
+            _few_ticks(axis.yaxis)
         axis.set_xticks([0, 1], ["control", "treated"])
         axis.set_title(name)
     return figure

@@ -14,7 +14,7 @@ _BATCH: Final = 256
 _RATE: Final = 2e-3
 _DECAY: Final = 1e-3
 _CLIP: Final = 5.0  # in spreads: a summary beyond says no more than that it is beyond
-_FEWEST_STEPS, _MOST_STEPS = 1500, 6000
+_FEWEST_STEPS, _MOST_STEPS = 400, 6000
 
 
 class Scaling(NamedTuple):
@@ -87,7 +87,7 @@ def _descend(
     weights: list[np.ndarray], x: np.ndarray, y: np.ndarray, random: np.random.Generator
 ) -> None:
     """Adam, in place."""
-    steps = int(np.clip(30 * len(x) / _BATCH, _FEWEST_STEPS, _MOST_STEPS))
+    steps = int(np.clip(100 * len(x) / _BATCH, _FEWEST_STEPS, _MOST_STEPS))
     mean = [np.zeros_like(w) for w in weights]
     square = [np.zeros_like(w) for w in weights]
     for step in range(1, steps + 1):
