@@ -13,7 +13,7 @@ from cellcrawl.infer.bank import Bank, Block
 from cellcrawl.infer.prior import LENGTH_UNIT, TIME_UNIT, Prior, Range
 from cellcrawl.infer.summaries import Films, Summary, summaries
 
-EDGE_ERROR: Final = 0.16
+EDGE_ERROR: Final = 0.25
 """Error of an outline read from pixels, standard deviation along its normal, in pixels.
 
 A calibration against `cellcrawl.observe`; `tests/infer` holds the two to each other.

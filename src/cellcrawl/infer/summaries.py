@@ -19,6 +19,7 @@ FEWEST_FRAMES: Final = 16
 """Fewer frames than this show no turn and no beat."""
 _NODES: Final = 32
 _TINY: Final = 1e-12
+_SMALL: Final = 1e-3  # of a mean: a spread below is as good as none
 _BANDS: Final = 6
 _SHAPES: Final = (-1, 2, -2, 3, -3, 4, -4, 5, -5)
 _QUANTILES: Final = (0.02, 0.1, 0.25, 0.5, 0.75, 0.9, 0.98)
@@ -125,8 +126,10 @@ def _of_track(to: _Gathered, path: np.ndarray, step: float, lag: int) -> None:
 
 
 def _of_outlines(to: _Gathered, path: np.ndarray, modes: np.ndarray, step: float, lag: int) -> None:
-    size = {k: np.abs(modes[..., films.MODES + k]) for k in _SHAPES}
-    fine = np.sqrt((np.abs(modes[..., np.abs(films.WAVES) > 5]) ** 2).sum(axis=-1))
+    # What is below the steps of a bank is rounding, and its logarithm no shape.
+    size = {k: np.hypot(np.abs(modes[..., films.MODES + k]), films.QUANTUM) for k in _SHAPES}
+    waves = np.abs(modes[..., np.abs(films.WAVES) > 5]) ** 2
+    fine = np.sqrt(waves.sum(axis=-1) + films.QUANTUM**2)
     area = math.pi * np.sum(films.WAVES * np.abs(modes) ** 2, axis=-1)
     # A start point that turns with the shape, and not with where a tracing began.
     first = np.angle(modes[..., films.MODES + 1])
@@ -185,12 +188,17 @@ def _in_direction(to: _Gathered, modes: np.ndarray, heading: np.ndarray) -> None
     first = np.angle(turned[..., films.MODES + 1])
     turned = turned * np.exp(-1j * first[..., None] * films.WAVES)
     mean = turned.mean(axis=1)
-    spread = np.sqrt((np.abs(turned - mean[:, None]) ** 2).mean(axis=1))
+    spread = np.sqrt((np.abs(turned - mean[:, None]) ** 2).mean(axis=1) + films.QUANTUM**2)
     for k in _SHAPES:
         to.add(f"mean wave {k:+d} along the front", "length", mean[:, films.MODES + k].real, True)
         across = np.abs(mean[:, films.MODES + k].imag)
         to.add(f"mean wave {k:+d} across the front", "length", across, True)
-        to.add_log(f"spread of wave {k:+d}", "length", spread[:, films.MODES + k], True)
+        to.add_log(
+            f"spread of wave {k:+d} about its mean along the front",
+            "length",
+            spread[:, films.MODES + k],
+            True,
+        )
 
 
 def _edge_motion(to: _Gathered, outward: np.ndarray, when: str) -> None:
@@ -227,7 +235,8 @@ def _series(
     """Mean, spread, pace and memory of a number over time."""
     mean, spread = values.mean(axis=1), values.std(axis=1)
     to.add_log(f"mean of {name}", unit, np.abs(mean), outlines)
-    to.add_log(f"spread of {name}", "", _ratio(spread, np.abs(mean)), outlines)
+    part = np.hypot(_ratio(spread, np.abs(mean)), _SMALL)
+    to.add_log(f"spread of {name}", "", part, outlines)
     pace = (values[:, lag:] - values[:, :-lag]) / (lag * step)
     rms = np.sqrt((pace**2).mean(axis=1))
     to.add_log(f"pace of {name}", "1/time", _ratio(rms, np.maximum(spread, _TINY)), outlines)
