@@ -34,9 +34,9 @@ def test_films_are_those_of_the_runs(bank):
 def test_how_runs_ended_is_kept(bank):
     names, counts = np.unique(bank.outcomes, return_counts=True)
     assert dict(zip(names, counts, strict=True)) == {
-        "completed": 216,
-        "fragmented": 12,
-        "resting": 12,
+        "completed": 144,
+        "fragmented": 8,
+        "resting": 8,
     }
 
 

@@ -100,8 +100,8 @@ def test_looks_count_every_run(bank):
     microscope = Microscope(1.0, 24, 0.0, 0.0, 1.0, 1.0, 1.0)
     view = look(bank, microscope, 2)
     assert sum(view.outcomes.values()) == 2 * len(bank)
-    assert view.outcomes["resting"] == 24
-    assert view.outcomes["ended before: fragmented"] == 24
+    assert view.outcomes["resting"] == 16
+    assert view.outcomes["ended before: fragmented"] == 16
     assert view.outcomes["seen"] == len(view.run) == len(view.summaries)
     assert np.isfinite(view.summaries).all()
     one = film()

@@ -207,17 +207,17 @@ def _of_outlines(outlines: Outlines, name: str, wanted: int = 0) -> Cell:
     modes = films.modes_of_edge(even.real, even.imag)
     changed = sum(bool(one.changes) for one in chosen)
     notes = (f"{changed} outlines were changed when they were read",) if changed else ()
-    pixel = _pixel_of(chosen[0].xy) * length
+    pixel = _pixel_of([one.xy for one in chosen]) * length
     return _moving(Cell(name, step, path, modes, pixel, model, notes))
 
 
-def _pixel_of(xy: np.ndarray) -> float:
-    """Return the pixel that an outline traced along pixels shows, 0 for any other.
+def _pixel_of(traced: Sequence[np.ndarray]) -> float:
+    """Return the pixel that outlines traced along pixels show, 0 for any others.
 
-    Such an outline passes through the middles of sides of pixels: its points are whole numbers of
-    half pixels apart.
+    They pass through the middles of sides of pixels: points are whole numbers of half pixels
+    apart.
     """
-    steps = np.abs(np.diff(xy, axis=0)).ravel()
+    steps = np.abs(np.concatenate([np.diff(xy, axis=0) for xy in traced])).ravel()
     steps = steps[steps > 1e-9 * max(float(steps.max(initial=0.0)), 1e-300)]
     if not steps.size:
         return 0.0

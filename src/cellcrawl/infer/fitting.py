@@ -21,7 +21,6 @@ from cellcrawl.validation import is_real, one_of, real_number, shown, whole_numb
 
 METHODS: Final = ("abc", "npe")
 _SAME: Final = 0.01  # of the interval between frames
-_POSITION: Final = 0.1  # of a pixel: error of a centroid, where nobody says
 
 
 @checked
@@ -56,7 +55,8 @@ def fit(
         How many µm R_0 is; read off the outlines unless given. A track alone needs it.
     pixel, error : float, optional
         Size of a pixel, and standard deviation of the position along each axis, in µm (or in the
-        units of the run). ``error`` is a tenth of a pixel unless given.
+        units of the run). What pixels do to outlines, and to their centroid, is in without
+        ``error``; unless given it is 0, and the pixel that which the outlines show.
     looks : int
         How often each run of the bank is looked at, at other times and with other noise.
     seed : int
@@ -207,9 +207,11 @@ def microscope_of(
     count = min(min(len(cell.path) for cell in cells), most)
     shown_pixel = max((cell.pixel for cell in cells), default=0.0) if pixel is None else pixel
     size = real_number("pixel", shown_pixel, 0.0, 1e9)
-    shift = real_number("error", _POSITION * size if error is None else error, 0.0, 1e9)
+    shift = real_number("error", 0.0 if error is None else error, 0.0, 1e9)
     cut = [_cut(cell, count) for cell in cells]
     radius = float(np.median([cell.radius for cell in cut])) if outlines else 0.0
+    if outlines and length is not None:
+        radius = 1.0  # what the cell's size is does not change how it is seen
     return cut, Microscope(frame, count, size, shift, radius, time, length)
 
 

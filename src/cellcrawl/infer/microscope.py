@@ -238,7 +238,12 @@ def _noisy(
     together = np.sqrt(np.minimum(films.NODES * pixel / length, 1.0))
     noise = (EDGE_ERROR * pixel * together)[:, None, None] * random.standard_normal(edge.shape)
     rough = edge - 1j * slope / along * noise
-    return path, films.modes_of_edge(rough.real, rough.imag)
+    seen = films.modes_of_edge(rough.real, rough.imag)
+    # The centroid of the area moves with its edge.
+    area = np.pi * np.sum(films.WAVES * np.abs(modes) ** 2, axis=-1)
+    aside = 2.0 * np.pi * (edge * noise * along).mean(axis=-1) / area
+    seen[..., films.MODES] -= aside
+    return path + aside, seen
 
 
 def _at(values: np.ndarray, at: np.ndarray) -> np.ndarray:

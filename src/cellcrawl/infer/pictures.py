@@ -247,7 +247,7 @@ def calibration_picture(calibration: Calibration) -> Figure:
         recovered.set_xlabel("true, part of the prior")
         recovered.set_title(f"R² = {calibration.recovered[place]:.2f}")
         cells = len(calibration.rank)
-        ranks.hist(calibration.rank[:, place], 10, (0, 1), color=TRACK, alpha=0.75)
+        ranks.hist(calibration.rank[:, place], bins=10, range=(0, 1), color=TRACK, alpha=0.75)
         ranks.axhspan(*_expected(cells, 10), color=GUIDE, alpha=0.3, lw=0)
         ranks.set_title(f"ranks, p = {calibration.evenness[place]:.2f}")
         ranks.set_yticks([])

@@ -61,6 +61,10 @@ def summaries(seen: Films) -> tuple[list[Summary], np.ndarray]:
         radius = np.sqrt(np.maximum(np.median(area, axis=1), _TINY) / math.pi)
         path, modes = path / radius[:, None], modes / radius[:, None, None]
     lag = max(1, min(round(1.0 / seen.step), path.shape[1] // 6))
+    # Along x on the whole, so that points along an outline lie on the cell, not on the picture.
+    back = np.exp(-1j * np.angle(path[:, -1] - path[:, 0]))
+    path = path * back[:, None]
+    modes = None if modes is None else modes * back[:, None, None]
     _of_track(gathered, path, seen.step, lag)
     if modes is not None:
         _of_outlines(gathered, path, modes, seen.step, lag)
@@ -239,7 +243,8 @@ def _series(
     to.add_log(f"spread of {name}", "", part, outlines)
     pace = (values[:, lag:] - values[:, :-lag]) / (lag * step)
     rms = np.sqrt((pace**2).mean(axis=1))
-    to.add_log(f"pace of {name}", "1/time", _ratio(rms, np.maximum(spread, _TINY)), outlines)
+    still = np.hypot(spread, _SMALL * np.abs(mean))
+    to.add_log(f"pace of {name}", "1/time", np.hypot(_ratio(rms, still), _SMALL), outlines)
     centred = values - mean[:, None]
     to.add(
         f"skewness of {name}", "", np.cbrt(_ratio((centred**3).mean(axis=1), spread**3)), outlines
