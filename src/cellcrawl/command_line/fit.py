@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import shlex
 import sys
 from pathlib import Path
@@ -128,8 +129,11 @@ def _cells(file: Path, outlines: Path | None, track: str | None, reading: dict[s
     from cellcrawl.infer.cells import cells_of
 
     told = {name: value for name, value in reading.items() if name != "columns"}
-    if outlines is None and _has_outlines(file):
-        found = cc.read_outlines(file, **told)
+    found = None
+    if outlines is None and _may_have_outlines(file):
+        with contextlib.suppress(InputError):  # of tracks alone
+            found = cc.read_outlines(file, **told)
+    if found is not None:
         for line in found.lines():
             say(line)
         chosen = found if track is None else found.of_track(track)
@@ -146,11 +150,12 @@ def _cells(file: Path, outlines: Path | None, track: str | None, reading: dict[s
     return cells_of(picked, found)
 
 
-def _has_outlines(file: Path) -> bool:
-    """Whether a file of tracks is one of outlines itself, such as a label image."""
+def _may_have_outlines(file: Path) -> bool:
+    """Whether a file of tracks may be one of outlines too, such as a label image."""
     from cellcrawl.microscopy.recognise import form_of_file
 
-    return form_of_file(file) in ("tiff", "cellpose masks", "geojson", "imagej roi")
+    kinds = ("tiff", "cellpose masks", "geojson", "imagej roi", "trackmate")
+    return form_of_file(file) in kinds
 
 
 def _pixel(reading: dict[str, Any]) -> float | None:
