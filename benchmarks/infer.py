@@ -104,7 +104,7 @@ def posteriors(taught: Trained, cells: list[Cell]) -> tuple[np.ndarray, list[Any
         values = summaries_of(film, taught.microscope)[1]
         thought = taught.thought(values)
         away.append(taught.alarm.strangeness(thought, values)[0] / taught.alarm.threshold)
-        found.append(approximate.posterior(taught.references, values[0]))
+        found.append(approximate.posterior(taught.references, values[0], taught.width))
     return np.array(away), found
 
 

@@ -83,7 +83,7 @@ def _others(result: dict[str, Any]) -> list[str]:
     if drug:
         rows += [
             "",
-            "| a drug that moves one parameter by a fifth, 20 cells a side | named right (aim: 90 %) |",
+            "| a drug moves one parameter by a fifth, 20 cells a side | named right (aim: 90 %) |",
             "|---|---|",
         ]
         for name, value in drug["right"].items():

@@ -242,6 +242,6 @@ def _fit(cell: Cell, taught: Trained, method: str, estimate: Any) -> Fit:
     microscope = taught.microscope
     film = cell.film(microscope.usual_time, microscope.usual_length)
     _, values = summaries_of(film, microscope)
-    plain = approximate.posterior(taught.references, values[0])
+    plain = approximate.posterior(taught.references, values[0], taught.width)
     samples = plain if estimate is None else estimate.posterior(values[0])
     return Fit.of(cell, taught, values[0], samples, method, plain)

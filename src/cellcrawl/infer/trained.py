@@ -100,6 +100,8 @@ class Trained(NamedTuple):
     alarm: Alarm
     aside: np.ndarray
     """Rows of the view that nothing was trained on, one a run."""
+    width: np.ndarray
+    """Factors of the spread of each parameter; see `approximate.fair_width`."""
 
     def thought(self, summaries: np.ndarray) -> np.ndarray:
         """Return the parameters that films are thought to have, shape (film, name)."""
@@ -131,8 +133,9 @@ def train(bank: Bank, microscope: Microscope, looks: int = 2, seed: int = 0) -> 
     found = approximate.learn(part, summaries, view.run[rows], seed)
     references = [one._replace(rows=rows[one.rows]) for one in found]
     alarm = _alarm(view, rows, aside, references)
-    calibration = calibrate(references, view, aside)
-    return Trained(bank, microscope, view, references, calibration, alarm, aside)
+    width = approximate.fair_width(references, view.summaries[aside], view.part[aside])
+    calibration = calibrate(references, view, aside, width)
+    return Trained(bank, microscope, view, references, calibration, alarm, aside, width)
 
 
 @functools.lru_cache(maxsize=4)
@@ -145,11 +148,13 @@ def trained(bank: Bank, microscope: Microscope, looks: int = 2, seed: int = 0) -
     return _kept(str(bank.path), bank.digest, microscope, looks, seed)
 
 
-def calibrate(references: list[Reference], view: View, rows: np.ndarray) -> Calibration:
+def calibrate(
+    references: list[Reference], view: View, rows: np.ndarray, width: np.ndarray
+) -> Calibration:
     """Return how posteriors of these rows stand to the truth."""
     mean, rank = [], []
     for row in rows:
-        found = approximate.posterior(references, view.summaries[row])
+        found = approximate.posterior(references, view.summaries[row], width)
         mean.append(found.weight @ found.part)
         rank.append(found.weight @ (found.part < view.part[row]))
     return Calibration(view.names, view.part[rows], np.array(mean), np.array(rank))
