@@ -65,18 +65,18 @@ def swim(run, keep):
     return Outcome({"status": status, "mode": mode, "message": ""}, films.film_of(made))
 
 
-@pytest.fixture(scope="session")
-def made_up(tmp_path_factory):
-    """A function that makes a bank of made-up films."""
-
-    def make(runs, output, **named):
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(films, "execute", swim)
-            return cc.infer.bank(PRIOR, runs, output, t_end=T_END, executor=InProcess(), **named)
-
-    return make
+def make_bank(runs, output, **named):
+    """Make a bank of made-up films."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(films, "execute", swim)
+        return cc.infer.bank(PRIOR, runs, output, t_end=T_END, executor=InProcess(), **named)
 
 
 @pytest.fixture(scope="session")
-def bank(made_up, tmp_path_factory):
-    return made_up(160, tmp_path_factory.mktemp("bank") / "bank.h5")
+def made_up():
+    return make_bank
+
+
+@pytest.fixture(scope="session")
+def bank(tmp_path_factory):
+    return make_bank(160, tmp_path_factory.mktemp("bank") / "bank.h5")

@@ -87,7 +87,7 @@ def _descend(
     weights: list[np.ndarray], x: np.ndarray, y: np.ndarray, random: np.random.Generator
 ) -> None:
     """Adam, in place."""
-    steps = int(np.clip(100 * len(x) / _BATCH, _FEWEST_STEPS, _MOST_STEPS))
+    steps = min(max(100 * len(x) // _BATCH, _FEWEST_STEPS), _MOST_STEPS)
     mean = [np.zeros_like(w) for w in weights]
     square = [np.zeros_like(w) for w in weights]
     for step in range(1, steps + 1):
