@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 from collections.abc import Iterator
 from typing import Any
@@ -21,6 +22,22 @@ hypothesis.settings.register_profile(
     "cellcrawl", deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow]
 )
 hypothesis.settings.load_profile("cellcrawl")
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Compile the solvers before the workers start, which would each do it otherwise.
+
+    Two processes share them; where the kernels are on disk already it takes a moment.
+    """
+    option = session.config.option
+    workers = getattr(option, "numprocesses", None)
+    if hasattr(session.config, "workerinput") or not workers or option.collectonly:
+        return
+    run = "import sys, cellcrawl as cc; [cc.simulate(solver=s, t_end=0.01) for s in sys.argv[1:]]"
+    shares = (["adaptive"], ["paper", "spline"])
+    children = [subprocess.Popen([sys.executable, "-c", run, *share]) for share in shares]
+    for child in children:
+        child.wait()
 
 
 def settings() -> dict[str, Any]:

@@ -219,8 +219,8 @@ def _calls(folder: Path) -> Iterator[Call]:
     yield call(cc.laws.Stiffness, chi=0.5)
     yield call(cc.laws.CatchSlip, catch=1.0, catch_force=0.5, slip=1.0, slip_force=1.0)
     yield call(cc.laws.check, law=cc.laws.Stiffness(), parameters=p)
-    yield call(cc.laws.rest_state, parameters=p, laws=cc.laws.Stiffness(chi=0.5))
-    yield call(cc.laws.rest_states, parameters=p, laws=cc.laws.Stiffness(chi=0.5))
+    yield call(cc.laws.rest_state, parameters=p, laws=cc.laws.Stiffness(chi=0.5), curvature=0.0)
+    yield call(cc.laws.rest_states, parameters=p, laws=cc.laws.Stiffness(chi=0.5), curvature=1.0)
     yield call(linear.growth_rates, parameters=p, k=2, laws="stiffness")
     yield call(
         cc.simulate, parameters=p, t_end=0.02, laws="stiffness", surroundings=None, rtol=1e-2,
@@ -381,9 +381,10 @@ def _calls(folder: Path) -> Iterator[Call]:
         one.crawling_states, one.length_stiffness, one.still_tension,
     ):  # fmt: skip
         yield call(function, parameters=p)
+    yield call(one.still_tension, parameters=p, laws="paper")
     yield call(one.crawling_states, parameters=p, anchoring=one.Anchoring())
-    yield call(one.front_speed, parameters=p, tension=one.still_tension(p))
-    yield call(one.uniform_states, parameters=p, tension=100.0)
+    yield call(one.front_speed, parameters=p, tension=one.still_tension(p), laws="paper")
+    yield call(one.uniform_states, parameters=p, tension=100.0, laws="paper")
     yield call(
         one.boundaries, parameters=p, which="symmetric", anchoring=one.Anchoring(),
         **{name: values[:2] for name, values in ranges.items()},
@@ -393,15 +394,16 @@ def _calls(folder: Path) -> Iterator[Call]:
     )
     yield call(
         one.flat_growth_rates, parameters=p, k=[1, 2], off_rate=50.0, tension_law="fixed",
-        length=6.0, anchoring=0.0,
+        length=6.0, anchoring=0.0, laws="paper",
     )  # fmt: skip
     yield call(
         one.simulate_flat_edge, parameters=p, t_end=0.01, tension=100.0, tension_law="fixed",
         length=6.0, start=one.FlatNoise(), anchoring=0.0, nodes=64, save_every=0.01, rtol=1e-3,
+        laws="paper",
     )  # fmt: skip
     yield call(
         one.simulate_two_edges, parameters=p, t_end=0.1, start="small", save_every=0.02,
-        rtol=1e-4, anchoring=one.Anchoring(),
+        rtol=1e-4, anchoring=one.Anchoring(), laws="paper",
     )  # fmt: skip
     yield call(one.regime, dataset=edges, after=0.1, threshold=0.02)
     yield call(one.stuck_length, dataset=flat, level=0.5)

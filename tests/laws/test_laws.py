@@ -230,23 +230,6 @@ def test_eigenmodes_know_the_papers_law_only():
         cc.simulate(CELL, 0.1, start=cc.Eigenmode(k=2), laws=Stiffness(chi=0.5))
 
 
-def test_the_line_model_and_the_rivals_have_the_same_law():
-    # they call the slip bond's functions directly, without a law set
-    from cellcrawl.physics import laws
-
-    values = state(PAPER)
-    y, r, n, sigma, kappa = (values[name] for name in ("phi", "r", "n", "sigma", "kappa"))
-    force = laws.driving_force(sigma, kappa, values["sigma_c"], values["h"])
-    for name, direct in {
-        "velocity": laws.edge_velocity(y, r, values["v_p"], values["epsilon"]),
-        "friction": laws.friction(y, r, n, values["zeta_1"]),
-        "balance": laws.friction(y, r, n, values["zeta_1"]) - force,
-        "binding": laws.binding_rate(n, r, values["r_on"]),
-        "balance/phi": laws.friction_slope(y, r, n, values["zeta_1"]),
-    }.items():
-        assert PAPER.compiled.evaluate(name, values) == pytest.approx(direct, rel=1e-14), name
-
-
 def test_a_law_of_a_script_is_found_by_the_workers_of_its_sweep_and_by_its_name(tmp_path):
     script = tmp_path / "glued.py"
     script.write_text(

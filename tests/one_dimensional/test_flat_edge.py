@@ -172,6 +172,35 @@ def test_a_mirrored_start_gives_the_mirrored_run():
     )
 
 
+def test_waves_under_another_law_grow_as_its_slopes_say():
+    laws, p = cc.laws.CatchSlip(), P.replace(r_on=30.0)
+    tension = od.still_tension(p, laws)
+    (rate, _) = od.flat_growth_rates(p, 3.0, laws=laws)
+    run = od.simulate_flat_edge(
+        p, 0.05, start=od.FlatWave(waves=3, amplitude=1e-5), rtol=1e-10, save_every=0.01, laws=laws
+    )
+    wave = np.fft.fft(run.bound_fraction.values, axis=1)[:, 3]
+    grown = np.log(np.abs(wave[-1] / wave[0])) / float(run.time[-1])
+    assert grown == pytest.approx(rate.real, rel=1e-3, abs=1e-3)
+    assert float(run.tension[0]) == pytest.approx(tension)
+    assert "CatchSlip" in run.attrs["laws"]
+
+
+def test_the_closed_quadratic_of_the_papers_law_is_what_its_slopes_make():
+    k = np.arange(0.0, 8.0)
+    for r_on, off_rate, springs in ((26.0, 50.0, 0.0), (40.0, 20.0, 100.0), (60.0, 80.0, 0.0)):
+        p = P.replace(r_on=r_on)
+        n, y = r_on / (r_on + off_rate), math.log(off_rate)
+        a, b, c = 1.0 + y + p.zeta_1 * n / off_rate, p.zeta_1 * n * y, 1.0 + y
+        q = r_on + off_rate + p.D * k**2
+        stiffness = p.epsilon * (p.h * (y * (off_rate + p.zeta_1 * n) - p.sigma_c) * k**2 + springs)
+        found = od.flat_growth_rates(p, k, off_rate=off_rate, anchoring=springs)
+        for root in found.T:
+            parts = a * root**2, (a * q + stiffness * c - b) * root, stiffness * c * q
+            size = sum(np.abs(part) for part in parts) + 1e-9
+            assert np.all(np.abs(sum(parts)) < 1e-12 * size)
+
+
 def test_runs_converge_with_the_nodes():
     def run(nodes):
         made = od.simulate_flat_edge(

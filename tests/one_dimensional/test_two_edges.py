@@ -185,9 +185,12 @@ def test_errors_shrink_with_the_tolerance(elasticity, r_on, zeta_1):
 
 
 def test_the_step_is_of_order_four_and_its_estimate_of_order_three():
+    from cellcrawl.laws import PAPER
     from cellcrawl.one_dimensional import rosenbrock
+    from cellcrawl.one_dimensional.cell import edge_of
 
-    constants = np.array([P.r_on, P.zeta_1, P.v_p, P.epsilon, P.sigma_c, 3e3, 500.0, 2.0])
+    constants, edge = np.array([3e3, 500.0, 2.0]), edge_of(P, PAPER, 2)
+    laws = PAPER.compiled
     begin = np.array([0.6, 0.25, tension_of_still(P), 15.0, 0.0, 0.0])
 
     def after(steps: int) -> tuple[np.ndarray, float]:
@@ -195,8 +198,8 @@ def test_the_step_is_of_order_four_and_its_estimate_of_order_three():
         rate, new, missed = np.empty(6), np.empty(6), np.empty(6)
         total = 0.0
         for _ in range(steps):
-            assert rosenbrock.rates(state, constants, y, rate)
-            assert rosenbrock.step(state, y, constants, h, new, missed)
+            assert rosenbrock.rates(laws, edge, state, constants, y, rate)
+            assert rosenbrock.step(laws, edge, state, y, constants, h, new, missed)
             state, total = new.copy(), max(total, float(np.abs(missed[:2]).max()))
         return state, total
 
@@ -207,6 +210,28 @@ def test_the_step_is_of_order_four_and_its_estimate_of_order_three():
     assert np.all(np.abs(orders - 4.0) < 0.4)
     estimates = [estimate for _, estimate in results]
     assert np.all(np.abs(np.log2(np.array(estimates[:-1]) / estimates[1:]) - 4.0) < 0.4)
+
+
+def test_small_differences_of_the_edges_grow_by_the_slopes_of_any_law():
+    # without springs their rate is that of a flat edge at k = 0 whose tension is held
+    p = P.replace(r_on=26.0)
+    for laws in (
+        cc.laws.CatchSlip(),
+        cc.laws.PolymerizationUnderLoad(),
+        cc.laws.Stiffness(chi=0.5),
+    ):
+        rest = cc.laws.rest_state(p, laws, 0.0)
+        rate = float(max(od.flat_growth_rates(p, 0.0, laws=laws).real, key=abs))
+        start = od.TwoEdges(front=rest.bound_fraction + 1e-6, rear=rest.bound_fraction - 1e-6)
+        time = min(1.0, 2.0 / abs(rate))
+        run = od.simulate_two_edges(
+            p, time, start=start, laws=laws, rtol=1e-11, save_every=time / 8
+        )
+        n = run.bound_fraction
+        apart = (n.sel(edge="front") - n.sel(edge="rear")).values
+        found = math.log(apart[-1] / apart[1]) / float(run.time[-1] - run.time[1])
+        assert found == pytest.approx(rate, rel=1e-3), laws
+        assert od.still_tension(p, laws) == pytest.approx(rest.tension)
 
 
 def test_records_are_where_they_are_asked_for():

@@ -5,10 +5,28 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cellcrawl.physics.slip_bond import SOLVED, balance, solve_off_rate
+from cellcrawl.laws import PAPER
+from cellcrawl.physics.force_balance import SOLVED, bond_force, bond_force_near, solve_bonds
 from tests.strategies import parameters
 
 NODES = 40
+
+
+def edge(nodes=1, **rows):
+    """Local parameters of the paper's law: 0 but for those given."""
+    made = np.zeros((len(PAPER.rows), nodes))
+    for name, values in rows.items():
+        made[PAPER.rows.index(name)] = values
+    return made
+
+
+def balance(y, n, zeta_1, force):
+    """Solve one edge whose pull is the contraction alone, by the search and from the guess."""
+    column = edge(zeta_1=zeta_1, sigma_c=force)
+    found = bond_force(PAPER.compiled, y, n, 0.0, 0.0, column, 0)
+    near = bond_force_near(PAPER.compiled, y, n, 0.0, 0.0, column, 0)
+    assert near == pytest.approx(found, rel=1e-12, abs=1e-13, nan_ok=True)
+    return found
 
 
 def friction(y, n, zeta_1):
@@ -20,7 +38,8 @@ def solve(y, n, force, zeta_1):
     """Solve with the pull given by the contraction alone; return the code and ``y``."""
     y = np.array(y, dtype=float)
     zero = np.zeros_like(y)
-    code = solve_off_rate(y, n, 0.0, zero, np.broadcast_to(zeta_1, y.shape).copy(), force, zero)
+    rows = edge(y.size, zeta_1=zeta_1, sigma_c=force)
+    code = solve_bonds(PAPER.compiled, y, n, 0.0, zero, rows)
     return code, y
 
 
@@ -85,15 +104,8 @@ def test_each_node_has_a_root_exactly_where_the_pull_is_not_negative(p, kappa):
     y = np.full(NODES, math.log(p.r_p))
     n, bent = np.full(NODES, p.n_bar), np.ones(NODES)
     bent[17] = kappa
-    code = solve_off_rate(
-        y,
-        n,
-        p.sigma_bar,
-        bent,
-        np.full(NODES, p.zeta_1),
-        np.full(NODES, p.sigma_c),
-        np.full(NODES, p.h),
-    )
+    rows = edge(NODES, zeta_1=p.zeta_1, sigma_c=p.sigma_c, h=p.h)
+    code = solve_bonds(PAPER.compiled, y, n, p.sigma_bar, bent, rows)
     pull = p.sigma_c + p.sigma_bar * (1.0 + p.h * kappa)
     resting = p.sigma_c + p.sigma_bar * (1.0 + p.h)
     if min(pull, resting) > 1e-9:

@@ -49,9 +49,16 @@ def test_a_saved_run_reads_back_as_it_was(tmp_path, suffix):
 
 
 @SOLVERS
-@pytest.mark.parametrize("suffix", ["nc", "zarr"])
 @pytest.mark.parametrize(
-    ("halfway", "save_every"), [(0.5, 0.1), (0.52, 0.1), (0.3337, 0.1), (0.5003, 0.00037)]
+    ("suffix", "halfway", "save_every"),
+    [
+        ("nc", 0.5, 0.1),
+        ("nc", 0.52, 0.1),
+        ("nc", 0.3337, 0.1),
+        ("nc", 0.5003, 0.00037),
+        ("zarr", 0.3337, 0.1),
+        pytest.param("zarr", 0.5003, 0.00037, marks=pytest.mark.slow),
+    ],
 )
 def test_resumed_run_has_the_bits_of_an_uninterrupted_one(
     tmp_path, solver, suffix, halfway, save_every
@@ -90,10 +97,11 @@ def test_resume_where_it_ended_returns_the_run_and_before_is_refused(tmp_path):
         cc.resume(path, 0.4)
 
 
-def test_killed_at_any_moment_a_run_opens_and_resumes(tmp_path):
+@pytest.mark.parametrize("kills", [5, pytest.param(20, marks=pytest.mark.slow)])
+def test_killed_at_any_moment_a_run_opens_and_resumes(tmp_path, kills):
     straight = cc.simulate(cc.Parameters(r_on=26), 3.0, solver="paper", nodes=200, save_every=0.05)
     chance = random.Random(20)
-    for attempt in range(20):
+    for attempt in range(kills):
         path = tmp_path / f"run-{attempt}.nc"
         child = subprocess.Popen([sys.executable, "-c", RUN, str(path), "3.0"])
         patience = time.monotonic() + 60.0
@@ -180,6 +188,7 @@ def test_damaged_foreign_and_newer_files_are_named(tmp_path):
         assert "\n" not in str(caught.value)
 
 
+@pytest.mark.slow
 def test_memory_stays_flat_in_the_length_of_the_run(tmp_path):
     script = RUN + "import resource; print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)\n"
     script = script.replace("save_every=0.05", "save_every=0.002").replace("nodes=200", "nodes=400")

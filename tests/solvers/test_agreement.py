@@ -21,8 +21,14 @@ def answer(p: cc.Parameters, **options) -> np.ndarray:
     return np.array([*relative, run["centroid_x"].item(), run["centroid_y"].item()])
 
 
-@pytest.mark.parametrize("elasticity", LAWS)
-@pytest.mark.parametrize(("r_on", "zeta_1"), POINTS)
+QUICK = {(*point, "printed") for point in POINTS} | {(26, 600, "consistent")}
+CELLS = [
+    pytest.param(*cell, marks=() if cell in QUICK else pytest.mark.slow)
+    for cell in ((*point, elasticity) for point in POINTS for elasticity in LAWS)
+]
+
+
+@pytest.mark.parametrize(("r_on", "zeta_1", "elasticity"), CELLS)
 def test_solvers_agree_within_the_sum_of_their_errors(r_on, zeta_1, elasticity):
     p = cc.Parameters(r_on=r_on, zeta_1=zeta_1, elasticity=elasticity)
     dt = 5e-4 if elasticity == "printed" else 2.5e-4

@@ -65,18 +65,21 @@ def test_what_goes_with_the_front_is_strongest_ahead_and_fades_at_rest():
     assert gain(0.0, (1.0, 0.0), 3.0) == pytest.approx(0.1 * math.tanh(1.0), rel=1e-9)
 
 
+@pytest.mark.slow  # compiles the solvers for a tension gradient
 @pytest.mark.parametrize("mu", [100.0, 400.0])
 def test_a_tension_gradient_slows_polarisation_as_theory_says(mu):
     found, theory = along_edge.polarisation_rate(mu)
     assert found == pytest.approx(theory, rel=1e-6)
 
 
+@pytest.mark.slow  # compiles the solvers for a tension gradient
 def test_polarisation_stops_where_the_drag_of_the_motion_is_enough():
     found, theory = along_edge.polarisation_rate(310.71)
     assert abs(found) < 1e-3
     assert abs(theory) < 1e-3
 
 
+@pytest.mark.slow  # compiles the solvers for a tension gradient
 def test_without_strength_a_tension_gradient_leaves_every_bit():
     run = {"start": check_start(CELL), "t_end": 1.0}
     base = cc.simulate(CELL, **run)
@@ -84,11 +87,13 @@ def test_without_strength_a_tension_gradient_leaves_every_bit():
     assert different_values(base, still) == 0
 
 
+@pytest.mark.slow  # compiles the solvers for a tension gradient
 def test_every_record_has_the_velocity_its_parameters_were_made_with():
     # friction is pull with the velocity that the record's own edge has; both are near 1000
     assert along_edge.amiss(200.0) < 1e-5
 
 
+@pytest.mark.slow  # compiles the solvers for a tension gradient
 def test_a_run_with_motion_resumes_to_the_same_bits(tmp_path):
     run = {"start": check_start(CELL), "surroundings": TensionGradient(mu=200.0)}
     path = tmp_path / "run.nc"

@@ -1,7 +1,7 @@
 """The model as a plain system of equations on a uniform grid that never changes.
 
 What a general solver is given to integrate, and of no use to ours: it shares the pointwise laws of
-`cellcrawl.physics` with them and nothing else, so that it checks them too. Tangent angle less its
+`cellcrawl.laws` with them and nothing else, so that it checks them too. Tangent angle less its
 winding (``w``) at the nodes, bound fraction (``n``) at the midpoints between them, tenth-order
 differences on that staggered grid; length, tension, area and the position of node 0 are integrated
 beside them, and nothing ties the shape's own area to the tension: its error falls with the grid.
@@ -10,15 +10,21 @@ beside them, and nothing ties the shape's own area to the tension: its error fal
 from __future__ import annotations
 
 import math
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from cellcrawl._compile import inlined_kernel, kernel
+from cellcrawl._compile import kernel
 from cellcrawl.curve import fourier
-from cellcrawl.physics.exponential import exponential
-from cellcrawl.physics.laws import binding_rate, driving_force, edge_velocity
-from cellcrawl.physics.slip_bond import SOLVED, halley_step, solve_off_rate
+from cellcrawl.laws.functions import (
+    binding,
+    nearly_renewed_rate,
+    off_rate,
+    renewed_rate,
+    velocity,
+)
+from cellcrawl.laws.rest import rest_state
+from cellcrawl.physics.force_balance import SOLVED, halley_step, solve_bonds
 from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.starts import CellState
 
@@ -26,7 +32,7 @@ SCALARS: Final = 5  # length, tension, area, position of node 0: the last entrie
 _PAD = 5
 _ROWS = 8  # of the work array, each with room to wrap a stencil round
 _W, _N, _KAPPA, _RATE, _SPEED, _STRETCH, _SLIDE, _BINDING = range(_ROWS)
-_NEAR, _SETTLED = 0.12, 4e-6  # steps in log r from which two Halley steps reach rounding
+_NEAR, _SETTLED = 0.12, 4e-6  # steps of the force from which two Halley steps reach rounding
 
 # weights by distance: derivative and mean half-way between samples, derivatives at a sample, mean
 # over a cell
@@ -76,14 +82,16 @@ class UniformGrid:
         self.calls = 0
         self._edge = conditions.edge(0.0, nodes)
         self._tension_rate = conditions.tension_rate(0.0)
-        self._y = np.full(nodes, math.log(conditions.at(0.0).r_p))
+        self._laws = conditions.laws.compiled
+        rest = rest_state(conditions.at(0.0), conditions.laws)
+        self._phi = np.full(nodes, rest.bond_force)
         self._work = np.zeros((_ROWS, nodes + 2 * _PAD))
-        self._work[_RATE] = conditions.at(0.0).r_p
+        self._work[_RATE] = rest.off_rate
 
     def __call__(self, t: float, u: np.ndarray, out: np.ndarray) -> None:
-        """Write the rates of ``u`` to ``out``; NaN where no off-rate balances the forces."""
+        """Write the rates of ``u`` to ``out``; NaN where the forces have no balance."""
         self.calls += 1
-        if not _rates(u, out, self._y, self._edge, self._tension_rate, self._work):
+        if not _rates(self._laws, u, out, self._phi, self._edge, self._tension_rate, self._work):
             out[:] = np.nan
 
     def function(self, t: float, u: np.ndarray) -> np.ndarray:
@@ -116,27 +124,28 @@ def _wrap(a: np.ndarray, nodes: int) -> None:
 
 @kernel
 def _rates(
+    laws: Any,
     u: np.ndarray,
     out: np.ndarray,
-    y: np.ndarray,
+    phi: np.ndarray,
     edge: np.ndarray,
     tension_rate: float,
     work: np.ndarray,
 ) -> bool:
-    """Rates of a state; False where there is no off-rate. ``y`` is the last ``log r``."""
-    nodes = y.size
+    """Rates of a state from the last ``phi``; False where the forces have no balance."""
+    nodes = phi.size
     length, sigma = u[2 * nodes], u[2 * nodes + 1]
     if not 0.0 < length < np.inf:
         return False
     w, n, slide = work[_W], work[_N], work[_SLIDE]
-    speed, stretch, binding = work[_SPEED], work[_STRETCH], work[_BINDING]
+    speed, stretch, bound = work[_SPEED], work[_STRETCH], work[_BINDING]
     per_spacing, winding, spacing = nodes / length, 2.0 * math.pi / length, length / nodes
     for i in range(nodes):
         w[_PAD + i] = u[i]
         n[_PAD + i] = u[nodes + i]
     _wrap(w, nodes)
     _wrap(n, nodes)
-    if not _velocities(sigma, winding, per_spacing, y, edge, work):
+    if not _velocities(laws, sigma, winding, per_spacing, phi, edge, work):
         return False
     _wrap(speed, nodes)
     _wrap(stretch, nodes)
@@ -166,7 +175,7 @@ def _rates(
             slid += _MIDDLE[k] * (slide[j + 1 + k] + slide[j - k])
         out[i] = slide[j] * (winding + per_spacing * bend) - per_spacing * speed_s
         spread = edge[2, i] * per_spacing * per_spacing * n_ss
-        out[nodes + i] = binding[j] + spread + slid * per_spacing * n_s
+        out[nodes + i] = bound[j] + spread + slid * per_spacing * n_s
     first_speed = 0.0
     for k in range(5):
         first_speed += _MIDDLE[k] * (speed[_PAD + k] + speed[_PAD - 1 - k])
@@ -179,26 +188,18 @@ def _rates(
     return True
 
 
-@inlined_kernel
-def _growth(x: float) -> float:
-    """``exp(x)`` to rounding for |x| < 0.12."""
-    value = 1.0
-    for k in range(8, 0, -1):
-        value = 1.0 + value * x / k
-    return value
-
-
 @kernel
 def _velocities(
+    laws: Any,
     sigma: float,
     winding: float,
     per_spacing: float,
-    y: np.ndarray,
+    phi: np.ndarray,
     edge: np.ndarray,
     work: np.ndarray,
 ) -> bool:
     """Off-rate, velocity and binding at the midpoints; False where the balance has no root."""
-    nodes = y.size
+    nodes = phi.size
     w, n, kappa, rate = work[_W], work[_N], work[_KAPPA], work[_RATE]
     unsettled = 0
     for i in range(nodes):
@@ -207,25 +208,24 @@ def _velocities(
         for k in range(5):
             bend += _BETWEEN[k] * (w[j + 1 + k] - w[j - k])
         kappa[i] = winding + per_spacing * bend
-        force = driving_force(sigma, kappa[i], edge[5, i], edge[4, i])
         r = rate[i]  # of the last state: an exponential less
-        first = halley_step(y[i], r, n[j], edge[1, i], force)
-        near = y[i] + first
-        r *= _growth(first)
-        second = halley_step(near, r, n[j], edge[1, i], force)
-        y[i] = near + second
-        rate[i] = r * (1.0 + second * (1.0 + 0.5 * second))
-        good = (abs(first) < _NEAR) & (abs(second) < _SETTLED) & (y[i] >= 0.0) & (rate[i] > 0.5)
+        first = halley_step(laws, phi[i], r, n[j], sigma, kappa[i], edge, i)
+        near = phi[i] + first
+        r = renewed_rate(laws, r, near, first, edge, i)
+        second = halley_step(laws, near, r, n[j], sigma, kappa[i], edge, i)
+        phi[i] = near + second
+        rate[i] = nearly_renewed_rate(laws, r, phi[i], second, edge, i)
+        good = (abs(first) < _NEAR) & (abs(second) < _SETTLED) & (phi[i] >= 0.0) & (rate[i] > 0.5)
         unsettled += 0 if good else 1
     if unsettled > 0:
-        bound = n[_PAD : _PAD + nodes]
-        if solve_off_rate(y, bound, sigma, kappa[:nodes], edge[1], edge[5], edge[4]) != SOLVED:
+        at_midpoints = n[_PAD : _PAD + nodes]
+        if solve_bonds(laws, phi, at_midpoints, sigma, kappa[:nodes], edge) != SOLVED:
             return False
         for i in range(nodes):
-            rate[i] = exponential(y[i])
+            rate[i] = off_rate(laws, phi[i], edge, i)
     for i in range(nodes):
         j = i + _PAD
-        work[_SPEED, j] = edge_velocity(y[i], rate[i], edge[6, i], edge[3, i])
+        work[_SPEED, j] = velocity(laws, phi[i], rate[i], sigma, kappa[i], edge, i)
         work[_STRETCH, j] = kappa[i] * work[_SPEED, j]
-        work[_BINDING, j] = binding_rate(n[j], rate[i], edge[0, i])
+        work[_BINDING, j] = binding(laws, phi[i], rate[i], n[j], edge, i)
     return True

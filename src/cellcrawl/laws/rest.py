@@ -33,8 +33,12 @@ def local_values(parameters: Parameters, laws: Law) -> dict[str, float]:
 
 
 @checked
-def rest_states(parameters: Parameters, laws: Law = PAPER) -> list[RestState]:
+def rest_states(
+    parameters: Parameters, laws: Law = PAPER, curvature: float = 1.0
+) -> list[RestState]:
     """Return all resting circles of radius 1, the least force on a bond first.
+
+    With ``curvature`` 0, the resting straight edges.
 
     Raises
     ------
@@ -44,7 +48,7 @@ def rest_states(parameters: Parameters, laws: Law = PAPER) -> list[RestState]:
     complaint = laws.check(parameters)
     if complaint is not None:
         raise InputError(f"{laws.name}: {complaint}")
-    p = local_values(parameters, laws)
+    p = {**local_values(parameters, laws), "kappa": curvature}
     with np.errstate(all="ignore"):
         speed = np.broadcast_to(_at(laws, p, _FORCES)[0], _FORCES.shape)
     out, finite = speed > 0.0, np.isfinite(speed)
@@ -53,8 +57,10 @@ def rest_states(parameters: Parameters, laws: Law = PAPER) -> list[RestState]:
 
 
 @checked
-def rest_state(parameters: Parameters, laws: Law = PAPER) -> RestState:
+def rest_state(parameters: Parameters, laws: Law = PAPER, curvature: float = 1.0) -> RestState:
     """Return the resting circle of radius 1, that of the least force on a bond if there are some.
+
+    With ``curvature`` 0, the resting straight edge.
 
     Raises
     ------
@@ -63,11 +69,13 @@ def rest_state(parameters: Parameters, laws: Law = PAPER) -> RestState:
     """
     if laws.compiled is PAPER.compiled:
         p = parameters
-        return RestState(float(np.log(p.r_p)), p.r_p, p.n_bar, p.sigma_bar)
-    found = rest_states(parameters, laws)
+        tension = p.sigma_bar * ((1.0 + p.h) / (1.0 + curvature * p.h))
+        return RestState(float(np.log(p.r_p)), p.r_p, p.n_bar, tension)
+    found = rest_states(parameters, laws, curvature)
     if not found:
+        shape = "edge" if curvature == 0.0 else "circle"
         raise InputError(
-            f"under {laws!r} there is no resting circle: no force on the bonds makes the "
+            f"under {laws!r} there is no resting {shape}: no force on the bonds makes the "
             f"retrograde flow as fast as polymerisation, {parameters.v_p:g}"
         )
     return found[0]
@@ -97,16 +105,16 @@ class CellAtRest(Parameters):
 
 
 def _at(laws: Law, p: dict[str, Any], phi: Any) -> tuple[Any, Any, Any, Any]:
-    """Velocity of a circle whose bonds bear ``phi``, off-rate, bound fraction and tension."""
+    """Velocity of an edge whose bonds bear ``phi``, off-rate, bound fraction and tension."""
     evaluate = laws.compiled.evaluate
-    values = {**p, "phi": phi, "kappa": 1.0, "sigma": 0.0, "n": 0.0}
+    values = {**p, "phi": phi, "sigma": 0.0, "n": 0.0}
     values["r"] = evaluate("off_rate", values)
-    values["n"] = _zero(laws, "binding", values, "n", 0.5)
-    values["sigma"] = _zero(laws, "balance", values, "sigma", 1000.0)
+    values["n"] = zero_in(laws, "binding", values, "n", 0.5)
+    values["sigma"] = zero_in(laws, "balance", values, "sigma", 1000.0)
     return evaluate("velocity", values), values["r"], values["n"], values["sigma"]
 
 
-def _zero(laws: Law, what: str, values: dict[str, Any], name: str, guess: float) -> Any:
+def zero_in(laws: Law, what: str, values: dict[str, Any], name: str, guess: float) -> Any:
     """Where a formula is 0 in one variable, by Newton steps; exact at once where it is linear."""
     x = guess + 0.0 * np.asarray(values["phi"])
     for _ in range(30):

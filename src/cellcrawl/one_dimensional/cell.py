@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from cellcrawl._compile import kernel
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
-from cellcrawl.laws.law import PAPER
-from cellcrawl.laws.rest import local_values
+from cellcrawl.laws import as_law
+from cellcrawl.laws.law import PAPER, Law
+from cellcrawl.laws.rest import local_values, rest_state
 from cellcrawl.parameters import Parameters
-from cellcrawl.physics.slip_bond import balance
-from cellcrawl.solvers.base import pointwise
+from cellcrawl.physics.force_balance import solve_bonds
 from cellcrawl.validation import real_number, shown
 
 _STIFFEST = 1e9
@@ -66,34 +66,44 @@ def length_stiffness(parameters: Parameters) -> float:
 
 
 @checked
-def still_tension(parameters: Parameters) -> float:
-    """Return the tension at which a straight edge stands still, ``r log r = v_p``."""
-    return parameters.sigma_bar * (1.0 + parameters.h)
+def still_tension(parameters: Parameters, laws: Any = PAPER) -> float:
+    """Return the tension at which a straight edge stands still.
+
+    Under the paper's laws ``r log r = v_p`` there.
+
+    Parameters
+    ----------
+    parameters : Parameters
+        The cell.
+    laws : Law or str
+        The law set; the paper's unless given.
+
+    Raises
+    ------
+    InputError
+        If no edge stands still under the law.
+    """
+    return rest_state(parameters, as_law(laws), 0.0).tension
 
 
-@kernel
-def _log_off_rates(velocity: np.ndarray, out: np.ndarray) -> None:
-    for i in range(velocity.size):
-        out[i] = balance(np.nan, 0.0, 0.0, velocity[i])
+def edge_of(parameters: Parameters, laws: Law, nodes: int) -> np.ndarray:
+    """Return the local parameters at the nodes, shape (rows of the law, nodes)."""
+    values = local_values(parameters, laws)
+    return np.repeat([[values[name]] for name in laws.rows], nodes, axis=1)
 
 
 def off_rates_at(velocity: np.ndarray) -> np.ndarray:
-    """Return the off-rates at which the retrograde velocity ``r log r`` has values from 0 on."""
+    """Return the off-rates at which the paper's retrograde velocity has values from 0 on.
+
+    There the friction of the network alone balances a pull of that size.
+    """
     flat = np.ravel(np.asarray(velocity, float))
-    y = np.empty(flat.size)
-    _log_off_rates(flat, y)
-    rates: np.ndarray = np.exp(y).reshape(np.shape(velocity))
+    edge = np.zeros((len(PAPER.rows), flat.size))
+    edge[PAPER.rows.index("sigma_c")] = flat
+    phi, nothing = np.full(flat.size, np.nan), np.zeros(flat.size)
+    solve_bonds(PAPER.compiled, phi, nothing, 0.0, nothing, edge)
+    rates: np.ndarray = np.exp(phi).reshape(np.shape(velocity))
     return rates
-
-
-def velocity_and_friction(
-    parameters: Parameters, off_rate: np.ndarray, bound_fraction: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the outward velocity and the friction of edges, arrays of any one shape."""
-    edge = np.array([local_values(parameters, PAPER)[name] for name in PAPER.rows])
-    y = np.log(off_rate)
-    _, velocity, friction = pointwise(PAPER, y, bound_fraction, 0.0, 0.0, edge)
-    return velocity, friction
 
 
 def checked_cell(parameters: object, anchoring: object = FREE) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -30,25 +30,27 @@ _LONGEST: Final = 0.5
 
 @kernel
 def run(
+    laws: Any,
+    edge: np.ndarray,
     times: np.ndarray,
     constants: np.ndarray,
     rtol: float,
     tension_scale: float,
     most_steps: int,
     records: np.ndarray,
-    off_rates: np.ndarray,
+    bond_forces: np.ndarray,
     counters: np.ndarray,
 ) -> tuple[int, int]:
-    """Fill ``records`` (times, STATE) from its first row on, and ``off_rates`` (times, edges).
+    """Fill ``records`` (times, STATE) from its first row on, and ``bond_forces`` (times, edges).
 
     Errors are held below ``rtol`` in the bound fractions and below ``rtol * tension_scale`` in the
     tension, a step; steps end on the records exactly.
     """
     state, after, error = records[0].copy(), np.empty(STATE), np.empty(STATE)
-    y, new_y, rate = np.full(2, np.nan), np.empty(2), np.empty(STATE)
-    if not rates(state, constants, y, rate):
+    phi, new_phi, rate = np.full(2, np.nan), np.empty(2), np.empty(STATE)
+    if not rates(laws, edge, state, constants, phi, rate):
         return NO_ROOT, 0
-    off_rates[0] = np.exp(y)
+    bond_forces[0] = phi
     h = _FIRST
     for record in range(1, times.size):
         time, end = times[record - 1], times[record]
@@ -58,13 +60,13 @@ def run(
             if counters[STEPS] + counters[REJECTED] >= most_steps:
                 return TOO_MANY_STEPS, record
             size = np.inf
-            if step(state, y, constants, trial, after, error):
+            if step(laws, edge, state, phi, constants, trial, after, error):
                 size = max(abs(error[N_FRONT]), abs(error[N_REAR]))
                 pull = abs(error[TENSION]) + abs(error[IMBALANCE])
                 size = max(size, pull / tension_scale) / rtol
             if size <= 1.0:
-                new_y[:] = y
-                if not rates(after, constants, new_y, rate):
+                new_phi[:] = phi
+                if not rates(laws, edge, after, constants, new_phi, rate):
                     size = np.inf
             if not size <= 1.0:  # also where it is not a number
                 counters[REJECTED] += 1
@@ -73,10 +75,10 @@ def run(
                     return NO_ROOT if size == np.inf else STEP_TOO_SMALL, record
                 continue
             counters[STEPS] += 1
-            state[:], y[:] = after, new_y
+            state[:], phi[:] = after, new_phi
             time = end if trial == left else time + trial
             grown = trial * min(5.0, _SAFETY * max(size, 1e-10) ** -0.25)
             h = min(_LONGEST, max(h, grown) if trial < h else grown)
         records[record] = state
-        off_rates[record] = np.exp(y)
+        bond_forces[record] = phi
     return REACHED, times.size

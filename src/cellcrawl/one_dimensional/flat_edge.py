@@ -11,12 +11,15 @@ import xarray as xr
 
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
+from cellcrawl.laws import as_law
+from cellcrawl.laws.law import PAPER, Law
 from cellcrawl.one_dimensional import runge_kutta
-from cellcrawl.one_dimensional.cell import checked_cell, still_tension, velocity_and_friction
+from cellcrawl.one_dimensional.cell import checked_cell, edge_of, still_tension
 from cellcrawl.one_dimensional.flat_starts import FlatNoise, FlatSetting, FlatStart
 from cellcrawl.one_dimensional.flat_theory import LONGEST, TENSION_LAWS, uniform_states
 from cellcrawl.one_dimensional.two_edges import TENSION_SCALE, record_times
 from cellcrawl.parameters import Parameters
+from cellcrawl.solvers.base import pointwise
 from cellcrawl.validation import one_of, real_number, shown, whole_number
 
 _FEWEST, _MOST_NODES = 16, 8192
@@ -57,6 +60,7 @@ def simulate_flat_edge(
     nodes: int | None = None,
     save_every: float = 0.02,
     rtol: float = 1e-5,
+    laws: Any = PAPER,
 ) -> xr.Dataset:
     """Simulate a flat edge, periodic along its length.
 
@@ -86,6 +90,8 @@ def simulate_flat_edge(
     rtol : float
         Error allowed in a step: this much in the bound fraction, a tenth of it in the height, a
         hundred times as much in the tension; 1e-10 to 1e-2.
+    laws : Law or str
+        The law set, as for `cellcrawl.simulate`; the paper's unless given.
 
     Returns
     -------
@@ -122,8 +128,9 @@ def simulate_flat_edge(
     one_of("tension_law", tension_law, TENSION_LAWS)
     springs = real_number("anchoring", anchoring, 0.0, _STIFFEST)
     rtol = real_number("rtol", rtol, 1e-10, 1e-2)
-    held = still_tension(p) if tension is None else tension
-    uniform_states(p, held)
+    law = as_law(laws)
+    held = still_tension(p, law) if tension is None else tension
+    uniform_states(p, held, law)
     count = _nodes_for(p, length) if nodes is None else nodes
     count = whole_number("nodes", count, _FEWEST, _MOST_NODES)
     if t_end / save_every * count > _MOST_VALUES:
@@ -138,19 +145,27 @@ def simulate_flat_edge(
             f"start = {shown(start)} is no start of a flat edge: give FlatNoise, FlatWave, "
             "StuckPatch or FlatFields"
         )
-    bound, height = begin.fields(FlatSetting(p, float(held), s, length, tension_law, springs))
+    bound, height = begin.fields(FlatSetting(p, float(held), s, length, tension_law, springs, law))
     times = record_times(t_end, save_every)
     records = np.empty((times.size, 2 * count + 1))
     records[0] = np.concatenate([bound, height, [held]])
-    off_rates, curvatures = np.empty((times.size, count)), np.empty((times.size, count))
+    bond_forces, curvatures = np.empty((times.size, count)), np.empty((times.size, count))
     counters = np.zeros(2, np.int64)
     rate = p.tension_rate if tension_law == "elastic" else 0.0
-    constants = np.array(
-        [p.r_on, p.zeta_1, p.v_p, p.epsilon, p.sigma_c, p.h, p.D, length / count, rate, springs]
-    )
+    constants = np.array([p.D, length / count, rate, springs])
     scales = np.array([1.0, _HEIGHT_SCALE, TENSION_SCALE])
     ending, made = runge_kutta.run(
-        times, constants, rtol, scales, _MOST_STEPS, records, off_rates, curvatures, counters
+        law.compiled,
+        edge_of(p, law, count),
+        times,
+        constants,
+        rtol,
+        scales,
+        _MOST_STEPS,
+        records,
+        bond_forces,
+        curvatures,
+        counters,
     )
     if made == 0:
         raise InputError(
@@ -160,7 +175,8 @@ def simulate_flat_edge(
     status, message = _ENDINGS[ending]
     return _dataset(
         p,
-        (times[:made], s, records[:made], off_rates[:made], curvatures[:made]),
+        law,
+        (times[:made], s, records[:made], bond_forces[:made], curvatures[:made]),
         length / count,
         {
             "status": status,
@@ -169,6 +185,7 @@ def simulate_flat_edge(
             "tension_law": tension_law,
             "length": length,
             "anchoring": springs,
+            "laws": json.dumps(law.describe()),
             "rtol": rtol,
             "steps": int(counters[runge_kutta.STEPS]),
             "rejected_steps": int(counters[runge_kutta.REJECTED]),
@@ -197,13 +214,16 @@ def _unresolved(bound: np.ndarray) -> float:
 
 def _dataset(
     p: Parameters,
+    laws: Law,
     arrays: tuple[np.ndarray, ...],
     spacing: float,
     attributes: dict[str, Any],
 ) -> xr.Dataset:
-    times, s, records, off_rates, curvatures = arrays
+    times, s, records, bond_forces, curvatures = arrays
     bound, height = records[:, : s.size], records[:, s.size : -1]
-    velocity, friction = velocity_and_friction(p, off_rates, bound)
+    off_rates, velocity, friction = pointwise(
+        laws, bond_forces, bound, records[:, [-1]], curvatures, edge_of(p, laws, s.size)
+    )
     slope = (np.roll(height, -1, axis=1) - height) / spacing
     edge = ("time", "s")
     variables: dict[str, tuple[Any, np.ndarray, dict[str, str]]] = {

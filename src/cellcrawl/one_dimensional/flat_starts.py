@@ -10,7 +10,9 @@ import numpy as np
 
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
-from cellcrawl.one_dimensional.flat_theory import flat_growth_rates, flat_mode, uniform_states
+from cellcrawl.laws.law import PAPER, Law
+from cellcrawl.laws.rest import RestState
+from cellcrawl.one_dimensional.flat_theory import FlatWaves, uniform_edges
 from cellcrawl.parameters import Parameters
 from cellcrawl.validation import real_array, real_number, whole_number
 
@@ -28,17 +30,27 @@ class FlatSetting(NamedTuple):
     length: float
     tension_law: str
     anchoring: float
+    laws: Law = PAPER
+
+    @property
+    def edges(self) -> list[RestState]:
+        """The uniform edges at this tension."""
+        return uniform_edges(self.parameters, self.tension, self.laws)
+
+    @property
+    def uniform(self) -> RestState:
+        """The only uniform edge, or of three the unstable one between."""
+        return self.edges[len(self.edges) // 2]
 
     @property
     def off_rate(self) -> float:
-        """That of the uniform edge: the only one, or of three the unstable one between."""
-        states = uniform_states(self.parameters, self.tension)
-        return float(states[states.size // 2])
+        """That of the uniform edge."""
+        return self.uniform.off_rate
 
     @property
     def bound_fraction(self) -> float:
         """That of the uniform edge."""
-        return self.parameters.r_on / (self.parameters.r_on + self.off_rate)
+        return self.uniform.bound_fraction
 
 
 class FlatStart(Protocol):
@@ -110,18 +122,13 @@ class FlatWave:
     @checked
     def fields(self, setting: FlatSetting) -> Fields:
         k = 2.0 * math.pi * self.waves / setting.length
-        rate = flat_growth_rates(
-            setting.parameters,
-            k,
-            off_rate=setting.off_rate,
-            tension_law=setting.tension_law,
-            length=setting.length,
-            anchoring=setting.anchoring,
-        )[0]
-        mode = flat_mode(setting.parameters, k, setting.off_rate, complex(rate))
+        length = setting.length if setting.tension_law == "elastic" else 0.0
+        uniform = setting.uniform
+        waves = FlatWaves(setting.parameters, setting.laws, uniform, length, setting.anchoring)
+        rate = complex(waves.rates(np.asarray(k))[0])
         wave = self.amplitude * np.exp(-1j * self.direction * k * setting.s)
-        n = setting.bound_fraction + (mode.bound_fraction * wave).real
-        return np.clip(n, 0.0, 1.0), (mode.height * wave).real
+        n = uniform.bound_fraction + wave.real
+        return np.clip(n, 0.0, 1.0), (waves.height(k, rate) * wave).real
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -141,14 +148,14 @@ class StuckPatch:
 
     @checked
     def fields(self, setting: FlatSetting) -> Fields:
-        states = uniform_states(setting.parameters, setting.tension)
-        if states.size != 3:
+        states = setting.edges
+        if len(states) != 3:
             raise InputError(
                 f"at tension = {setting.tension:g} a flat edge has one uniform state: it cannot "
                 "be stuck here and slip there; give another tension or start"
             )
         p = setting.parameters
-        stuck, _, slipping = p.r_on / (p.r_on + states)
+        stuck, _, slipping = (state.bound_fraction for state in states)
         soft = 2.0 * math.sqrt(p.D / (p.r_on + p.r_p))
         away = np.abs(setting.s - 0.5 * setting.length) - 0.5 * self.part * setting.length
         inside = 0.5 * (1.0 - np.tanh(away / soft))

@@ -10,35 +10,30 @@ import numpy as np
 from cellcrawl._compile import kernel
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
+from cellcrawl.laws import as_law, functions
+from cellcrawl.laws.law import PAPER, Law
+from cellcrawl.laws.rest import RestState, local_values, rest_state, zero_in
+from cellcrawl.linear.any_law import edge_matrix, matrix_rates
 from cellcrawl.linear.bracketing import all_roots
-from cellcrawl.linear.characteristic import characteristic, checked_wavenumbers
-from cellcrawl.linear.quadratic import ordered_roots
-from cellcrawl.one_dimensional.cell import checked_cell
+from cellcrawl.linear.characteristic import checked_wavenumbers
+from cellcrawl.one_dimensional.cell import checked_cell, edge_of
 from cellcrawl.parameters import Parameters
-from cellcrawl.physics.laws import binding_rate
-from cellcrawl.physics.slip_bond import balance
+from cellcrawl.physics.force_balance import bond_force
 from cellcrawl.validation import one_of, real_number
 
 TENSION_LAWS: Final = ("fixed", "elastic")
 LONGEST: Final = 1e4
 _HIGHEST = 1e9
+_STRONGEST = 700.0  # force on a bond at which an exponential ends
 _STEPS = 4000
 
 
-class FlatMode(NamedTuple):
-    """Complex amplitudes ``f`` of ``Re f exp(i k s + rate t)`` on a flat edge."""
-
-    rate: complex
-    bound_fraction: complex
-    height: complex
-    off_rate: complex
-
-
 @checked
-def uniform_states(parameters: Parameters, tension: float) -> np.ndarray:
-    """Return the off-rates at which a uniform flat edge can be at a tension, lowest first.
+def uniform_states(parameters: Parameters, tension: float, laws: Any = PAPER) -> np.ndarray:
+    """Return the off-rates at which a uniform flat edge can be at a tension.
 
-    One, or three: the stuck state, an unstable one between, and the slipping state.
+    One, or three: the stuck state, an unstable one between, and the slipping state; in the order of
+    the force on a bond.
 
     Parameters
     ----------
@@ -46,31 +41,57 @@ def uniform_states(parameters: Parameters, tension: float) -> np.ndarray:
         The cell.
     tension : float
         Membrane tension; with contraction it must pull, ``sigma_c + tension >= 0``.
+    laws : Law or str
+        The law set; the paper's unless given.
 
     Raises
     ------
     InputError
-        For a pull below 0, which no off-rate balances.
+        For a tension at which no force on the bonds balances the pull, as one below 0.
     """
     checked_cell(parameters)
-    tension = real_number("tension", tension, -_HIGHEST, _HIGHEST)
-    force = parameters.sigma_c + tension
-    if force < 0.0:
+    states = uniform_edges(parameters, real_number("tension", tension, -_HIGHEST, _HIGHEST), laws)
+    return np.array([state.off_rate for state in states])
+
+
+def uniform_edges(parameters: Parameters, tension: float, laws: Any = PAPER) -> list[RestState]:
+    """Return the uniform flat edges at a tension, which need not rest; at least one."""
+    law = as_law(laws)
+    local = {**local_values(parameters, law), "sigma": tension, "kappa": 0.0}
+
+    def at(phi: Any) -> dict[str, Any]:
+        values = {**local, "phi": np.asarray(phi), "n": 0.0}
+        values["r"] = law.compiled.evaluate("off_rate", values)
+        values["n"] = zero_in(law, "binding", values, "n", 0.5)
+        return values
+
+    def excess(phi: np.ndarray) -> np.ndarray:
+        found: np.ndarray = law.compiled.evaluate("balance", at(phi))
+        return found
+
+    def unbound(phi: float) -> float:
+        """Excess of an edge without linkers: above the roots of any bound fraction."""
+        return float(law.compiled.evaluate("balance", {**at(phi), "n": 0.0}))
+
+    slack = float(excess(np.zeros(())))
+    if slack > 0.0:
+        least = f" is below -sigma_c = {-parameters.sigma_c:g}" if law == PAPER else ""
         raise InputError(
-            f"tension = {tension:g} is below -sigma_c = {-parameters.sigma_c:g}: no off-rate "
-            "r >= 1 balances the forces; give a higher tension"
+            f"tension = {tension:g}{least}: no force on the bonds balances the pull on a "
+            "flat edge; give a higher tension"
         )
-    if force == 0.0:
-        return np.ones(1)
-    p = parameters
-
-    def excess(y: np.ndarray) -> np.ndarray:
-        r = np.exp(y)
-        pull: np.ndarray = y * (r + p.zeta_1 * p.r_on / (p.r_on + r)) - force
-        return pull
-
-    states: np.ndarray = np.exp(all_roots(excess, 0.0, math.log1p(force) + 1e-9, 4001))
-    return states
+    high = 1.0
+    with np.errstate(over="ignore", invalid="ignore"):
+        while not (unbound(high) > 0.0 and excess(np.asarray(high)) > 0.0):
+            high *= 1.5
+            if not high < _STRONGEST:
+                raise InputError(
+                    f"under {law!r} no force on the bonds balances the pull on a flat edge at "
+                    f"tension = {tension:g}"
+                )
+    forces = all_roots(excess, 1e-9 * high, high, 4001) if slack < 0.0 else np.zeros(1)
+    states = [at(phi) for phi in forces]
+    return [RestState(*(float(s[name]) for name in ("phi", "r", "n", "sigma"))) for s in states]
 
 
 @checked
@@ -82,6 +103,7 @@ def flat_growth_rates(
     tension_law: str = "fixed",
     length: float = 2.0 * math.pi,
     anchoring: float = 0.0,
+    laws: Any = PAPER,
 ) -> np.ndarray:
     """Growth rates of waves of wavenumber ``k`` on a uniform flat edge.
 
@@ -92,13 +114,16 @@ def flat_growth_rates(
     k : float or array
         Wavenumbers; a wave of complex rate travels at ``Im(rate) / k`` along the edge.
     off_rate : float, optional
-        That of the uniform edge, at least 1; ``r_p``, at which the edge stands still, unless given.
+        That of the uniform edge, at least 1, under the paper's laws; that of the edge that stands
+        still unless given, ``r_p`` under those laws.
     tension_law : {"fixed", "elastic"}
         Whether the tension is held or follows the area swept, which only ``k = 0`` feels.
     length : float
         Length of the edge, which matters to the elastic tension only.
     anchoring : float
         Stiffness of springs to a body that never moves.
+    laws : Law or str
+        The law set; the paper's unless given.
 
     Returns
     -------
@@ -114,35 +139,48 @@ def flat_growth_rates(
     checked_cell(parameters)
     wavenumbers = checked_wavenumbers(k)
     one_of("tension_law", tension_law, TENSION_LAWS)
-    p, r = parameters, parameters.r_p
-    if off_rate is not None:
-        r = real_number("off_rate", off_rate, 1.0, 1e6)
+    law, p = as_law(laws), parameters
     length = real_number("length", length, 0.0, LONGEST, open_low=True)
     springs = real_number("anchoring", anchoring, 0.0, _HIGHEST)
-    base = characteristic(p, wavenumbers, {"r_p": np.asarray(r)})
-    tension = math.log(r) * (r + p.zeta_1 * p.r_on / (p.r_on + r)) - p.sigma_c
-    stiffness = p.epsilon * (p.h * tension * np.square(wavenumbers) + springs)
-    if tension_law == "elastic":
-        stiffness = stiffness + np.where(
-            wavenumbers == 0.0, p.epsilon * p.tension_rate * length, 0.0
-        )
-    quadratic = base._replace(stiffness=np.asarray(stiffness))
-    half = np.asarray(0.5 * quadratic.damping / quadratic.a)
-    product = np.asarray(quadratic.restoring / quadratic.a)
-    return ordered_roots(half, product, half**2 - product)
+    if off_rate is None:
+        state = rest_state(p, law, 0.0)
+    elif law == PAPER:
+        r = real_number("off_rate", off_rate, 1.0, 1e6)
+        n = p.r_on / (p.r_on + r)
+        state = RestState(math.log(r), r, n, math.log(r) * (r + p.zeta_1 * n) - p.sigma_c)
+    else:
+        raise InputError("off_rate tells the edge under the paper's laws alone: leave it out")
+    edge = FlatWaves(p, law, state, length if tension_law == "elastic" else 0.0, springs)
+    return edge.rates(wavenumbers)
 
 
-def flat_mode(parameters: Parameters, k: float, off_rate: float, rate: complex) -> FlatMode:
-    """Return the eigenmode of a growth rate, of size 1 in the bound fraction."""
-    p, r = parameters, off_rate
-    n = p.r_on / (p.r_on + r)
-    change = -(rate + p.r_on + r + p.D * k**2) / n
-    height = -p.epsilon * (1.0 + math.log(r)) * change / rate if rate != 0.0 else 0.0
-    return FlatMode(rate, 1.0 + 0.0j, complex(height), complex(change))
+class FlatWaves(NamedTuple):
+    """Small waves on a uniform flat edge."""
+
+    parameters: Parameters
+    laws: Law
+    state: RestState
+    length: float
+    """That over which the edge stretches the tension; 0 holds it."""
+    springs: float
+
+    def rates(self, k: np.ndarray) -> np.ndarray:
+        """Growth rates, complex, shape (..., 2), the larger first."""
+        return matrix_rates(self._matrix(k))
+
+    def height(self, k: float, rate: complex) -> complex:
+        """Height of a wave of a growth rate whose bound fraction has amplitude 1."""
+        (own, by_bound), _ = self._matrix(np.asarray(k))
+        return complex(by_bound / (rate - own)) if rate != own else 0.0
+
+    def _matrix(self, k: np.ndarray) -> np.ndarray:
+        p = self.parameters
+        stretching = np.where(np.equal(k, 0.0), p.tension_rate * self.length, 0.0)
+        return edge_matrix(p, k, self.laws, self.state, 0.0, stretching, self.springs)
 
 
 @checked
-def front_speed(parameters: Parameters, tension: float) -> float:
+def front_speed(parameters: Parameters, tension: float, laws: Any = PAPER) -> float:
     """Speed at which the stuck state invades the slipping one along a flat edge without curvature.
 
     Below 0 where the slipping state invades. Found by shooting in the plane of bound fraction and
@@ -154,23 +192,28 @@ def front_speed(parameters: Parameters, tension: float) -> float:
         The cell.
     tension : float
         A tension at which both states exist.
+    laws : Law or str
+        The law set; the paper's unless given.
 
     Raises
     ------
     InputError
         Where the edge has only one uniform state.
     """
-    states = uniform_states(parameters, tension)
-    if states.size != 3:
+    checked_cell(parameters)
+    law, tension = as_law(laws), real_number("tension", tension, -_HIGHEST, _HIGHEST)
+    states = uniform_edges(parameters, tension, law)
+    if len(states) != 3:
         raise InputError(
             f"at tension = {tension:g} a flat edge has one uniform state, not a stuck and a "
             "slipping one: no front joins them; give another tension"
         )
     p = parameters
-    stuck, _, slipping = (float(p.r_on / (p.r_on + r)) for r in states)
+    stuck, _, slipping = (state.bound_fraction for state in states)
     grid = np.linspace(slipping, stuck, 2 * _STEPS + 1)
     source = np.empty(grid.size)
-    _sources(grid, p.r_on, p.zeta_1, p.sigma_c + tension, source)
+    edge = edge_of(p.replace(h=0.0), law, 1)
+    _sources(law.compiled, edge, grid, tension, source)
     source[[0, -1]] = 0.0
     slope = (source[1] - source[0]) / (grid[1] - grid[0])
     high = 2.0 * math.sqrt(p.D * float(np.abs(np.gradient(source, grid)).max()))
@@ -185,11 +228,12 @@ def front_speed(parameters: Parameters, tension: float) -> float:
 
 
 @kernel
-def _sources(n: np.ndarray, r_on: float, zeta_1: float, force: float, out: np.ndarray) -> None:
-    y = np.nan
+def _sources(laws: Any, edge: np.ndarray, n: np.ndarray, tension: float, out: np.ndarray) -> None:
+    phi = np.nan
     for i in range(n.size):
-        y = balance(y, n[i], zeta_1, force)
-        out[i] = binding_rate(n[i], np.exp(y), r_on)
+        phi = bond_force(laws, phi, n[i], tension, 0.0, edge, 0)
+        r = functions.off_rate(laws, phi, edge, 0)
+        out[i] = functions.binding(laws, phi, r, n[i], edge, 0)
 
 
 @kernel

@@ -4,32 +4,26 @@ Six stages, L-stable and stiffly accurate, with an embedded method of order thre
 of the consistent law decays at rates of thousands; an implicit step follows it without small steps,
 and its linear system is an arrow that is solved by hand. Linear invariants are kept to rounding.
 
-Kernels use the letters ``n`` bound fraction, ``y = log r``, ``sigma`` tension, ``x`` how far an
-edge has moved outwards. The imbalance is half of what springs pull more on the front.
+Kernels use the letters ``n`` bound fraction, ``phi`` force on a bond, ``x`` how far an edge has
+moved outwards; ``laws`` and ``edge`` (rows, edges) are those of `cellcrawl.laws.functions`. The
+imbalance is half of what springs pull more on the front.
 """
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.physics.exponential import exponential
-from cellcrawl.physics.laws import (
-    binding_rate,
-    driving_force,
-    edge_velocity,
-    friction,
-    friction_slope,
-)
-from cellcrawl.physics.slip_bond import ROUND_OFF, balance, halley_step
+from cellcrawl.laws.functions import binding, off_rate, partials, velocity
+from cellcrawl.physics.force_balance import bond_force_near
 
 # entries of a state
 N_FRONT, N_REAR, TENSION, IMBALANCE, X_FRONT, X_REAR = range(6)
 STATE: Final = 6
 # entries of `constants`
-R_ON, ZETA_1, V_P, EPSILON, SIGMA_C, STIFFNESS, HELD, RELAXATION = range(8)
+STIFFNESS, HELD, RELAXATION = range(3)
 
 _GAMMA: Final = 0.25
 _A: Final = np.array(
@@ -62,32 +56,26 @@ _STAGES: Final = 6
 
 
 @kernel
-def off_rate(y: float, n: float, zeta_1: float, force: float) -> float:
-    """``log r``: two Halley steps from a guess that is usually near, or the search."""
-    z = y + halley_step(y, exponential(y), n, zeta_1, force)
-    z = z + halley_step(z, exponential(z), n, zeta_1, force)
-    residual = friction(z, exponential(z), n, zeta_1) - force
-    if abs(residual) <= ROUND_OFF * (1.0 + abs(force)) and z >= 0.0:
-        return z
-    return balance(y, n, zeta_1, force)
+def rates(
+    laws: Any,
+    edge: np.ndarray,
+    state: np.ndarray,
+    constants: np.ndarray,
+    phi: np.ndarray,
+    out: np.ndarray,
+) -> bool:
+    """Fill ``out`` with the rates of ``state``; ``phi`` (edges,) is a guess in, the root out.
 
-
-@kernel
-def rates(state: np.ndarray, constants: np.ndarray, y: np.ndarray, out: np.ndarray) -> bool:
-    """Fill ``out`` with the rates of ``state``; ``y`` (edges,) is a guess in, ``log r`` out.
-
-    False where an edge has no off-rate.
+    False where the forces on an edge have no balance.
     """
-    for edge in range(2):
-        n, side = state[edge], 1.0 - 2.0 * edge
-        tension = state[TENSION] + side * state[IMBALANCE]
-        force = driving_force(tension, 0.0, constants[SIGMA_C], 0.0)
-        y[edge] = off_rate(y[edge], n, constants[ZETA_1], force)
-        if y[edge] != y[edge]:
+    for i in range(2):
+        n, tension = state[i], state[TENSION] + (1.0 - 2.0 * i) * state[IMBALANCE]
+        phi[i] = bond_force_near(laws, phi[i], n, tension, 0.0, edge, i)
+        if phi[i] != phi[i]:
             return False
-        r = exponential(y[edge])
-        out[edge] = binding_rate(n, r, constants[R_ON])
-        out[X_FRONT + edge] = edge_velocity(y[edge], r, constants[V_P], constants[EPSILON])
+        r = off_rate(laws, phi[i], edge, i)
+        out[i] = binding(laws, phi[i], r, n, edge, i)
+        out[X_FRONT + i] = velocity(laws, phi[i], r, tension, 0.0, edge, i)
     front, rear = out[X_FRONT], out[X_REAR]
     out[TENSION] = constants[STIFFNESS] * (front + rear)
     out[IMBALANCE] = constants[HELD] * (front - rear) - constants[RELAXATION] * state[IMBALANCE]
@@ -95,20 +83,24 @@ def rates(state: np.ndarray, constants: np.ndarray, y: np.ndarray, out: np.ndarr
 
 
 @kernel
-def slopes(state: np.ndarray, constants: np.ndarray, y: np.ndarray, out: np.ndarray) -> None:
-    """Fill ``out`` (4, edges) with the slopes of the rates at given ``y``.
+def slopes(
+    laws: Any, edge: np.ndarray, state: np.ndarray, phi: np.ndarray, out: np.ndarray
+) -> None:
+    """Fill ``out`` (4, edges) with the slopes of the rates where the forces balance.
 
     Rows: binding rate over n, over sigma; edge velocity over n, over sigma.
     """
-    for edge in range(2):
-        n, r = state[edge], exponential(y[edge])
-        steepness = friction_slope(y[edge], r, n, constants[ZETA_1])
-        y_n, y_sigma = -constants[ZETA_1] * y[edge] / steepness, 1.0 / steepness
-        slowing = -constants[EPSILON] * r * (1.0 + y[edge])
-        out[0, edge] = -constants[R_ON] - r - n * r * y_n
-        out[1, edge] = -n * r * y_sigma
-        out[2, edge] = slowing * y_n
-        out[3, edge] = slowing * y_sigma
+    for i in range(2):
+        tension = state[TENSION] + (1.0 - 2.0 * i) * state[IMBALANCE]
+        r = off_rate(laws, phi[i], edge, i)
+        g_phi, g_n, g_sigma, _, v_phi, v_sigma, _, b_phi, b_n = partials(
+            laws, phi[i], r, state[i], tension, 0.0, edge, i
+        )
+        phi_n, phi_sigma = -g_n / g_phi, -g_sigma / g_phi
+        out[0, i] = b_n + b_phi * phi_n
+        out[1, i] = b_phi * phi_sigma
+        out[2, i] = v_phi * phi_n
+        out[3, i] = v_sigma + v_phi * phi_sigma
 
 
 @kernel
@@ -143,8 +135,10 @@ def _solve(
 
 @kernel
 def step(
+    laws: Any,
+    edge: np.ndarray,
     state: np.ndarray,
-    y: np.ndarray,
+    phi: np.ndarray,
     constants: np.ndarray,
     h: float,
     after: np.ndarray,
@@ -152,18 +146,18 @@ def step(
 ) -> bool:
     """Step ``state`` by ``h`` into ``after`` with the local ``error``; False where it has no root.
 
-    ``y`` (edges,) is ``log r`` at the start of the step and is kept.
+    ``phi`` (edges,) is the force on a bond at the start of the step and is kept.
     """
     slope = np.empty((4, 2))
     stages = np.empty((_STAGES, STATE))
-    rate, right, at = np.empty(STATE), np.empty(STATE), y.copy()
-    slopes(state, constants, y, slope)
+    rate, right, at = np.empty(STATE), np.empty(STATE), phi.copy()
+    slopes(laws, edge, state, phi, slope)
     for i in range(_STAGES):
         after[:] = state
         for j in range(i):
             for m in range(STATE):
                 after[m] += _A[i, j] * stages[j, m]
-        if not rates(after, constants, at, rate):
+        if not rates(laws, edge, after, constants, at, rate):
             return False
         right[:] = rate
         for j in range(i):

@@ -1,29 +1,31 @@
 """The flat edge in time: an error-controlled explicit Runge-Kutta method of order five.
 
 Space is a periodic line of equal spacing with differences of order eight. Kernels use the letters
-``n`` bound fraction, ``u`` height of the edge, ``y = log r``; ``kappa = -u_ss`` is the curvature of
-a gentle slope, positive where the edge bulges outwards. A state holds n and u of all
-nodes, then the tension.
+``n`` bound fraction, ``u`` height of the edge, ``phi`` force on a bond; ``kappa = -u_ss`` is the
+curvature of a gentle slope, positive where the edge bulges outwards; ``laws`` and ``edge`` (rows,
+nodes) are those of `cellcrawl.laws.functions`. A state holds n and u of all nodes, then the
+tension.
 """
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
 from cellcrawl._compile import kernel
-from cellcrawl.physics.exponential import exponential
-from cellcrawl.physics.laws import binding_rate, edge_velocity
-from cellcrawl.physics.slip_bond import SOLVED, solve_off_rate
+from cellcrawl.laws.functions import binding, off_rate, velocity
+from cellcrawl.laws.law import LOCAL
+from cellcrawl.physics.force_balance import SOLVED, solve_bonds
 
 # what `run` returns beside the number of records made
 REACHED, NO_ROOT, STEP_TOO_SMALL, TOO_MANY_STEPS = range(4)
 # entries of `constants`
-R_ON, ZETA_1, V_P, EPSILON, SIGMA_C, H, D, SPACING, TENSION_RATE, HOLD = range(10)
+D, SPACING, TENSION_RATE, HOLD = range(4)
 # entries of `counters`
 STEPS, REJECTED = range(2)
 NEAR: Final = 4  # nodes to each side in a difference
+_PRESSURE: Final = LOCAL.index("pressure")  # the row of what springs pull
 
 _WEIGHTS: Final = (-205.0 / 72.0, 8.0 / 5.0, -1.0 / 5.0, 8.0 / 315.0, -1.0 / 560.0)
 # Dormand & Prince 1980; the last row is the solution of order five
@@ -67,35 +69,36 @@ def second_derivative(field: np.ndarray, spacing: float, out: np.ndarray) -> Non
 
 @kernel
 def rates(
+    laws: Any,
+    edge: np.ndarray,
     state: np.ndarray,
     constants: np.ndarray,
-    rows: np.ndarray,
     kappa: np.ndarray,
-    y: np.ndarray,
+    phi: np.ndarray,
     out: np.ndarray,
 ) -> int:
-    """Fill ``out`` with the rates of ``state``; `SOLVED`, or a node without an off-rate.
+    """Fill ``out`` with the rates of ``state``; `SOLVED`, or a node where no forces balance.
 
-    ``rows`` (3, nodes) holds zeta_1, sigma_c and h at each node; ``kappa`` and ``y`` are results
-    too, ``y`` from a guess.
+    ``kappa`` and ``phi`` are results too, ``phi`` from a guess, and so is the pull of the springs
+    in ``edge``.
     """
-    nodes = y.size
+    nodes = phi.size
     n, u, sigma = state[:nodes], state[nodes : 2 * nodes], state[2 * nodes]
     second_derivative(u, constants[SPACING], kappa)
     for i in range(nodes):
         kappa[i] = -kappa[i]
-        rows[1, i] = constants[SIGMA_C] + constants[HOLD] * u[i]
-    found = solve_off_rate(y, n, sigma, kappa, rows[0], rows[1], rows[2])
+        edge[_PRESSURE, i] = constants[HOLD] * u[i]
+    found = solve_bonds(laws, phi, n, sigma, kappa, edge)
     if found != SOLVED:
         return found
     second_derivative(n, constants[SPACING], out[:nodes])
     swept = 0.0
     for i in range(nodes):
-        r = exponential(y[i])
-        out[i] = constants[D] * out[i] + binding_rate(n[i], r, constants[R_ON])
-        velocity = edge_velocity(y[i], r, constants[V_P], constants[EPSILON])
-        out[nodes + i] = velocity
-        swept += velocity
+        r = off_rate(laws, phi[i], edge, i)
+        out[i] = constants[D] * out[i] + binding(laws, phi[i], r, n[i], edge, i)
+        outward = velocity(laws, phi[i], r, sigma, kappa[i], edge, i)
+        out[nodes + i] = outward
+        swept += outward
     out[2 * nodes] = constants[TENSION_RATE] * constants[SPACING] * swept
     return SOLVED
 
@@ -114,30 +117,30 @@ def _error(stages: np.ndarray, nodes: int, scales: np.ndarray) -> float:
 
 @kernel
 def run(
+    laws: Any,
+    edge: np.ndarray,
     times: np.ndarray,
     constants: np.ndarray,
     rtol: float,
     scales: np.ndarray,
     most_steps: int,
     records: np.ndarray,
-    off_rates: np.ndarray,
+    bond_forces: np.ndarray,
     curvatures: np.ndarray,
     counters: np.ndarray,
 ) -> tuple[int, int]:
-    """Fill ``records`` (times, 2 nodes + 1) from its first on, off-rates and curvatures with it.
+    """Fill ``records`` (times, 2 nodes + 1) from its first on, bond forces and curvatures with it.
 
     The error of a step is held below ``rtol * scales`` in bound fraction, height and tension, at
     every node. Steps end on the records exactly.
     """
-    nodes, size = off_rates.shape[1], records.shape[1]
-    rows = np.empty((3, nodes))
-    rows[0], rows[2] = constants[ZETA_1], constants[H]
+    nodes, size = bond_forces.shape[1], records.shape[1]
     state, after, stages = records[0].copy(), np.empty(size), np.empty((_STAGES, size))
-    kappa, y = np.empty(nodes), np.full(nodes, np.nan)
-    trial_y = np.empty(nodes)
-    if rates(state, constants, rows, kappa, y, stages[0]) != SOLVED:
+    kappa, phi = np.empty(nodes), np.full(nodes, np.nan)
+    trial_phi = np.empty(nodes)
+    if rates(laws, edge, state, constants, kappa, phi, stages[0]) != SOLVED:
         return NO_ROOT, 0
-    off_rates[0], curvatures[0] = np.exp(y), kappa
+    bond_forces[0], curvatures[0] = phi, kappa
     h = 1e-4
     for record in range(1, times.size):
         time, end = times[record - 1], times[record]
@@ -146,7 +149,7 @@ def run(
             trial = left if h >= 0.999 * left else min(h, 0.5 * left)
             if counters[STEPS] + counters[REJECTED] >= most_steps:
                 return TOO_MANY_STEPS, record
-            trial_y[:] = y
+            trial_phi[:] = phi
             found = SOLVED
             for i in range(1, _STAGES):
                 after[:] = state
@@ -154,7 +157,7 @@ def run(
                     factor = trial * _A[i, j]
                     for m in range(size):
                         after[m] += factor * stages[j, m]
-                found = rates(after, constants, rows, kappa, trial_y, stages[i])
+                found = rates(laws, edge, after, constants, kappa, trial_phi, stages[i])
                 if found != SOLVED:
                     break
             error = trial * _error(stages, nodes, scales) / rtol if found == SOLVED else np.inf
@@ -165,10 +168,10 @@ def run(
                     return NO_ROOT if found != SOLVED else STEP_TOO_SMALL, record
                 continue
             counters[STEPS] += 1
-            state[:], y[:], stages[0] = after, trial_y, stages[_STAGES - 1]
+            state[:], phi[:], stages[0] = after, trial_phi, stages[_STAGES - 1]
             time = end if trial == left else time + trial
             grown = trial * min(5.0, _SAFETY * max(error, 1e-10) ** -0.2)
             h = min(_LONGEST, max(h, grown) if trial < h else grown)
         records[record] = state
-        off_rates[record], curvatures[record] = np.exp(y), kappa
+        bond_forces[record], curvatures[record] = phi, kappa
     return REACHED, times.size

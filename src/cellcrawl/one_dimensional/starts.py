@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import Final
 
 from cellcrawl.errors import InputError, nearest_name
+from cellcrawl.laws.law import PAPER, Law
+from cellcrawl.laws.rest import CellAtRest, rest_state
 from cellcrawl.one_dimensional.cell import still_tension
 from cellcrawl.parameters import Parameters
 from cellcrawl.validation import real_number, shown
@@ -64,18 +66,19 @@ STARTS: Final[dict[str, Callable[[Parameters], TwoEdges]]] = {
 slipping rear; both edges short of a fifth of their linkers, alike to a millionth."""
 
 
-def start_of(parameters: Parameters, start: object) -> TwoEdges:
+def start_of(parameters: Parameters, start: object, laws: Law = PAPER) -> TwoEdges:
     """Return the start that a name or a `TwoEdges` means, with its tension."""
     if isinstance(start, str) and start in STARTS:
-        start = STARTS[start](parameters)
+        at_rest = CellAtRest.of(parameters, rest_state(parameters, laws, 0.0))
+        start = STARTS[start](at_rest)
     if not isinstance(start, TwoEdges):
         hint = f" ({nearest_name(start, STARTS)})" if isinstance(start, str) else ""
         raise InputError(
             f"start = {shown(start)} is not known: it must be one of {', '.join(STARTS)} or "
             f"one_dimensional.TwoEdges(...){hint}"
         )
-    tension = still_tension(parameters) if start.tension is None else start.tension
-    if parameters.sigma_c + tension < 0.0:
+    tension = still_tension(parameters, laws) if start.tension is None else start.tension
+    if laws.compiled is PAPER.compiled and parameters.sigma_c + tension < 0.0:
         raise InputError(
             f"tension = {tension:g} is below -sigma_c = {-parameters.sigma_c:g}: no off-rate "
             "r >= 1 balances the forces; give a higher tension"

@@ -13,6 +13,8 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from cellcrawl.arguments import checked
+from cellcrawl.laws.law import PAPER
+from cellcrawl.laws.rest import local_values
 from cellcrawl.linear.bracketing import all_roots
 from cellcrawl.linear.characteristic import (
     Characteristic,
@@ -177,7 +179,9 @@ def crawling_margin(
 
 
 def _pull(r_on: Any, zeta_1: Any, off_rate: np.ndarray) -> np.ndarray:
-    pull: np.ndarray = np.log(off_rate) * (off_rate + zeta_1 * r_on / (r_on + off_rate))
+    """Friction of an edge whose linkers are in equilibrium."""
+    values = {"phi": np.log(off_rate), "r": off_rate, "n": r_on / (r_on + off_rate)}
+    pull: np.ndarray = PAPER.compiled.evaluate("friction", {**values, "zeta_1": zeta_1})
     return pull
 
 
@@ -225,15 +229,20 @@ def _jacobian(
     total = length_stiffness(p) + 0.5 * anchoring.stiffness
     matrix = np.zeros((4, 4))
     for edge, side in enumerate((1.0, -1.0)):
-        r, y = off_rates[edge], float(np.log(off_rates[edge]))
-        steepness = r * (1.0 + y) + p.zeta_1 * n[edge]
-        y_n, y_sigma = -p.zeta_1 * y / steepness, 1.0 / steepness
-        slowing = -p.epsilon * r * (1.0 + y)
+        r = off_rates[edge]
+        values = {**local_values(p, PAPER), "phi": float(np.log(r)), "r": r, "n": n[edge]}
+        values |= {"sigma": 0.0, "kappa": 0.0}  # the slopes do not depend on the tension
+
+        def slope(what: str, values: dict[str, float] = values) -> float:
+            return float(PAPER.compiled.evaluate(what, values))
+
+        phi_n = -slope("balance/n") / slope("balance/phi")
+        phi_sigma = -slope("balance/sigma") / slope("balance/phi")
         pulled = np.array([1.0, side])
-        matrix[edge, edge] = -p.r_on - r - n[edge] * r * y_n
-        matrix[edge, 2:] = -n[edge] * r * y_sigma * pulled
+        matrix[edge, edge] = slope("binding/n") + slope("binding/phi") * phi_n
+        matrix[edge, 2:] = slope("binding/phi") * phi_sigma * pulled
         springs = np.array([total, 0.5 * anchoring.stiffness * side])
-        matrix[2:, edge] = springs * slowing * y_n
-        matrix[2:, 2:] += np.outer(springs, slowing * y_sigma * pulled)
+        matrix[2:, edge] = springs * slope("velocity/phi") * phi_n
+        matrix[2:, 2:] += np.outer(springs, slope("velocity/phi") * phi_sigma * pulled)
     matrix[3, 3] -= anchoring.relaxation
     return matrix if tied else matrix[:3, :3]

@@ -11,13 +11,15 @@ import xarray as xr
 
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
+from cellcrawl.laws import as_law
+from cellcrawl.laws.law import PAPER, Law
 from cellcrawl.one_dimensional import drive
 from cellcrawl.one_dimensional.cell import (
     FREE,
     Anchoring,
     checked_cell,
+    edge_of,
     length_stiffness,
-    velocity_and_friction,
 )
 from cellcrawl.one_dimensional.rosenbrock import (
     IMBALANCE,
@@ -30,6 +32,7 @@ from cellcrawl.one_dimensional.rosenbrock import (
 )
 from cellcrawl.one_dimensional.starts import TwoEdges, start_of
 from cellcrawl.parameters import Parameters
+from cellcrawl.solvers.base import pointwise
 from cellcrawl.validation import real_number
 
 TENSION_SCALE: Final = 100.0
@@ -59,6 +62,7 @@ def simulate_two_edges(
     save_every: float = 0.02,
     rtol: float = 1e-6,
     anchoring: Anchoring = FREE,
+    laws: Any = PAPER,
 ) -> xr.Dataset:
     """Simulate a cell on a line: a front and a rear edge coupled by one tension.
 
@@ -78,6 +82,8 @@ def simulate_two_edges(
         tension; 1e-12 to 1e-2.
     anchoring : Anchoring
         Springs to the cell body; none unless given.
+    laws : Law or str
+        The law set, as for `cellcrawl.simulate`; the paper's unless given.
 
     Returns
     -------
@@ -114,16 +120,25 @@ def simulate_two_edges(
             f"{MOST_RECORDS} records: give a larger save_every"
         )
     rtol = real_number("rtol", rtol, 1e-12, 1e-2)
-    begin = start_of(parameters, start)
+    law = as_law(laws)
+    begin = start_of(parameters, start, law)
     times = record_times(t_end, save_every)
-    records, off_rates, counters, ending = integrate(parameters, begin, times, rtol, anchoring)
+    records, bond_forces, counters, ending = integrate(
+        parameters, begin, times, rtol, anchoring, law
+    )
     made = len(records)
+    if made == 0:
+        raise InputError(
+            f"no force on the bonds balances the forces on an edge at tension = {begin.tension:g}: "
+            "give another start"
+        )
     status, message = _ENDINGS[ending]
     return _dataset(
         parameters,
+        law,
         times[:made],
         records,
-        off_rates,
+        bond_forces,
         {
             "status": status,
             "status_message": message,
@@ -132,6 +147,7 @@ def simulate_two_edges(
                 {"front": begin.front, "rear": begin.rear, "tension": begin.tension}
             ),
             "anchoring": json.dumps(vars(anchoring)),
+            "laws": json.dumps(law.describe()),
             "rtol": rtol,
             "steps": int(counters[drive.STEPS]),
             "rejected_steps": int(counters[drive.REJECTED]),
@@ -150,34 +166,47 @@ def record_times(t_end: float, save_every: float) -> np.ndarray:
 
 
 def integrate(
-    parameters: Parameters, start: TwoEdges, times: np.ndarray, rtol: float, anchoring: Anchoring
+    parameters: Parameters,
+    start: TwoEdges,
+    times: np.ndarray,
+    rtol: float,
+    anchoring: Anchoring,
+    laws: Law = PAPER,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
-    """Return records (times, STATE), off-rates (times, 2), step counts and how the run ended."""
-    p, springs = parameters, 0.5 * anchoring.stiffness
-    constants = np.array(
-        [
-            *(p.r_on, p.zeta_1, p.v_p, p.epsilon, p.sigma_c),
-            *(length_stiffness(p) + springs, springs, anchoring.relaxation),
-        ]
-    )
-    records, off_rates = np.zeros((times.size, STATE)), np.empty((times.size, 2))
+    """Return records (times, STATE), bond forces (times, 2), step counts, how the run ended."""
+    springs = 0.5 * anchoring.stiffness
+    constants = np.array([length_stiffness(parameters) + springs, springs, anchoring.relaxation])
+    records, bond_forces = np.zeros((times.size, STATE)), np.empty((times.size, 2))
     records[0, [N_FRONT, N_REAR, TENSION]] = start.front, start.rear, start.tension
     counters = np.zeros(2, np.int64)
     ending, made = drive.run(
-        times, constants, rtol, TENSION_SCALE, _MOST_STEPS, records, off_rates, counters
+        laws.compiled,
+        edge_of(parameters, laws, 2),
+        times,
+        constants,
+        rtol,
+        TENSION_SCALE,
+        _MOST_STEPS,
+        records,
+        bond_forces,
+        counters,
     )
-    return records[:made], off_rates[:made], counters, ending
+    return records[:made], bond_forces[:made], counters, ending
 
 
 def _dataset(
     p: Parameters,
+    laws: Law,
     times: np.ndarray,
     records: np.ndarray,
-    off_rates: np.ndarray,
+    bond_forces: np.ndarray,
     attributes: dict[str, Any],
 ) -> xr.Dataset:
     bound = records[:, [N_FRONT, N_REAR]]
-    velocity, friction = velocity_and_friction(p, off_rates, bound)
+    tension = records[:, [TENSION]] + records[:, [IMBALANCE]] * np.array([1.0, -1.0])
+    off_rates, velocity, friction = pointwise(
+        laws, bond_forces, bound, tension, 0.0, edge_of(p, laws, 2)
+    )
     outward = records[:, [X_FRONT, X_REAR]]
     edge = ("time", "edge")
     variables: dict[str, tuple[Any, np.ndarray, dict[str, str]]] = {

@@ -76,7 +76,7 @@ def solve_bonds(
     """
     nodes = n.size
     unsettled = 0
-    for i in range(nodes):
+    for i in range(nodes):  # as in `bond_force_near`, without the branch
         z = phi[i]
         for _ in range(2):
             r = off_rate(laws, z, edge, i)
@@ -94,3 +94,20 @@ def solve_bonds(
         if phi[i] != phi[i]:
             return i
     return SOLVED
+
+
+@kernel
+def bond_force_near(
+    laws: Any, phi: float, n: float, sigma: float, kappa: float, edge: np.ndarray, i: int
+) -> float:
+    """Like `bond_force` from a guess that is usually near: two Halley steps, or the search."""
+    z = phi
+    for _ in range(2):
+        r = off_rate(laws, z, edge, i)
+        z = z + halley_step(laws, z, r, n, sigma, kappa, edge, i)
+    r = off_rate(laws, z, edge, i)
+    g, slope, _ = balance(laws, z, r, n, sigma, kappa, edge, i)
+    scale = 1.0 + abs(friction(laws, z, r, n, edge, i))
+    if abs(g) <= ROUND_OFF * scale and z >= 0.0 and slope > 0.0:
+        return z
+    return bond_force(laws, phi, n, sigma, kappa, edge, i)

@@ -170,13 +170,13 @@ def pointwise(
     laws: Law,
     phi: np.ndarray,
     bound_fraction: np.ndarray,
-    tension: float,
+    tension: np.ndarray | float,
     curvature: np.ndarray | float,
     edge: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Off-rate, normal velocity and friction of the edge where bonds bear ``phi``.
 
-    Arrays have shape (nodes,), ``edge`` (rows of the law, nodes).
+    Arrays broadcast to shape (..., nodes), ``edge`` has (rows of the law, nodes).
     """
     values = dict(zip(laws.rows, edge, strict=True))
     values |= {"phi": phi, "n": bound_fraction, "sigma": tension, "kappa": curvature}
