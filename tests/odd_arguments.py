@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import datetime
 import decimal
 import fractions
@@ -21,6 +22,7 @@ from matplotlib.figure import Figure
 
 import cellcrawl as cc
 from cellcrawl.sweeps.executors import InProcess
+from tests.infer.conftest import PRIOR, T_END, make_bank, swimmer
 from tests.runs import circling
 
 Arguments = dict[str, Any]
@@ -79,6 +81,76 @@ def odd_values() -> list[Any]:
 def run_without_records() -> xr.Dataset:
     """Return a run without records."""
     return circling(0.3, records=3).isel(time=slice(0))
+
+
+def _fits(call: Callable[..., Call], folder: Path) -> Iterator[Call]:
+    """Calls that fit made-up cells; networks are trained in five steps meanwhile."""
+    infer, prior = cc.infer, PRIOR
+    known = make_bank(90, folder / "known.h5")
+    other = make_bank(90, folder / "other.h5", laws="stiffness")
+    cells = [swimmer(25.0, 1e-3, seed, step=0.5) for seed in (1, 2, 3)]
+    filmed = {"time_unit": (0.8, 1.25, "log"), "length_unit": 1.0, "pixel": 0.0, "error": 0.0,
+              "outlines": None, "looks": 1, "seed": 0}  # fmt: skip
+    with training_in(5):
+        fits = infer.fit_all(cells, known, **filmed)
+    film = cc.observe(cells[0].isel(time=slice(20, None)), pixel=0.1, frame=0.5)
+    quick = training_in(5)
+    yield call(infer.Range, low=1.0, high=2.0, scale="log")
+    yield call(infer.Prior, ranges={"r_on": (15, 40)})
+    yield call(
+        infer.bank, prior=prior, runs=90, output=folder / "known.h5", laws="paper",
+        parameters=None, t_end=T_END, seed=1, executor=InProcess(), workers=1, progress=False,
+    )  # fmt: skip
+    yield call(infer.open_bank, path=folder / "known.h5")
+    yield call(
+        quick(infer.fit), "cellcrawl.infer.fit", observed=film, bank=known, method="abc", **filmed
+    )
+    yield call(
+        quick(infer.fit_all), "cellcrawl.infer.fit_all", observed=cells, bank=known, method="abc",
+        **filmed,
+    )  # fmt: skip
+    yield call(
+        quick(infer.choose), "cellcrawl.infer.choose", observed=cells[0], banks=[known, other],
+        **filmed,
+    )  # fmt: skip
+    yield call(refused(infer.save_network), "cellcrawl.infer.save_network", fit=fits[0],
+               path=folder / "network.npz")  # fmt: skip
+    yield call(infer.together, fits=fits)
+    yield call(infer.compare, control=fits, treated=fits)
+    yield call(infer.corner, fit=fits[0])
+    yield call(infer.foretold, fit=fits[0], count=1, seed=1)
+    yield call(fits[0].interval, name="r_on", level=0.9)
+    yield call(
+        infer.report, fits=fits[:1], output=folder / "fit.html", command="", comparison=None,
+        group=None, title="",
+    )  # fmt: skip
+
+
+def refused(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Call what a fit without a network is refused by; odd values are answered as ever."""
+
+    @functools.wraps(function)
+    def wrapped(**arguments: Any) -> Any:
+        try:
+            return function(**arguments)
+        except cc.InputError as error:
+            if "only a fit by method='npe'" not in str(error):
+                raise
+
+    return wrapped
+
+
+@contextlib.contextmanager
+def training_in(steps: int) -> Iterator[None]:
+    """Train networks in so few steps meanwhile; also a decorator."""
+    from cellcrawl.infer import regression
+
+    usual = regression._MOST_STEPS
+    regression._MOST_STEPS = steps
+    try:
+        yield
+    finally:
+        regression._MOST_STEPS = usual
 
 
 def styled(**options: Any) -> None:
@@ -337,6 +409,8 @@ def _calls(folder: Path) -> Iterator[Call]:
     yield call(one.regime, dataset=edges, after=0.1, threshold=0.02)
     yield call(one.stuck_length, dataset=flat, level=0.5)
     yield call(one.wave_velocity, dataset=flat)
+    # fits
+    yield from _fits(call, folder)
     # sweeps
     yield call(
         cc.Grid, axes={"r_on": [20, 30]}, points=[{"D": 0.1}], parameters=p,

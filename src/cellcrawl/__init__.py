@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from cellcrawl import branches as branches
+    from cellcrawl import infer as infer
     from cellcrawl import laws as laws
     from cellcrawl import linear as linear
     from cellcrawl import microscopy as microscopy
@@ -90,6 +91,7 @@ _HOMES = {
 }
 _MODULES = (
     "branches",
+    "infer",
     "laws",
     "linear",
     "microscopy",

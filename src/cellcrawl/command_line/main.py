@@ -30,6 +30,8 @@ _COMMANDS: Final[dict[str, tuple[str, str]]] = {
     "reproduce": ("reproduce", "Make the figures and movies of the paper."),
     "classify": ("classify", "Name the motility modes of runs and of tracks."),
     "tracks": ("tracks", "Draw a sheet about tracks: modes, headings, displacements."),
+    "fit": ("fit", "Say what tracks and outlines of cells tell of their adhesions."),
+    "bank": ("bank", "Make a bank of runs for fit."),
     "plot": ("draw", "Draw a saved run, or the tracks of a table."),
     "movie": ("draw", "Film a saved run."),
     "explore": ("explore", "Open the live cell: the solver at work in your browser."),

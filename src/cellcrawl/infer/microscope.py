@@ -1,0 +1,289 @@
+"""A bank seen through one microscope: the same camera, length of film and noise as the data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from cellcrawl.errors import InputError
+from cellcrawl.infer import films
+from cellcrawl.infer.bank import Bank, Block
+from cellcrawl.infer.prior import LENGTH_UNIT, TIME_UNIT, Prior, Range
+from cellcrawl.infer.summaries import Films, Summary, summaries
+
+EDGE_ERROR: Final = 0.25
+"""Error of an outline read from pixels, standard deviation along its normal, in pixels.
+
+A calibration against `cellcrawl.observe`; `tests/infer` holds the two to each other.
+"""
+
+
+@dataclass(frozen=True)
+class Microscope:
+    """What was filmed and how.
+
+    Attributes
+    ----------
+    frame : float
+        Time between frames, in s.
+    frames : int
+        Number of frames.
+    pixel, error : float
+        Size of a pixel and standard deviation of the position, in µm; 0 for none.
+    radius : float
+        Median radius of the cell (square root of area over pi) in µm; 0 for a track alone.
+    time_unit : float or Range
+        How many s 1/k_off0 lasts, known or not.
+    length_unit : float, Range or None
+        How many µm R_0 is, known or not; None to read it off the outlines.
+    """
+
+    frame: float
+    frames: int
+    pixel: float
+    error: float
+    radius: float
+    time_unit: float | Range
+    length_unit: float | Range | None
+
+    @property
+    def outlines(self) -> bool:
+        """Whether there are outlines."""
+        return self.radius > 0.0
+
+    @property
+    def unknown(self) -> dict[str, Range]:
+        """The units that are not known."""
+        given = {TIME_UNIT: self.time_unit, LENGTH_UNIT: self.length_unit}
+        return {name: value for name, value in given.items() if isinstance(value, Range)}
+
+    @property
+    def usual_time(self) -> float:
+        """A usual 1/k_off0 in s, in which summaries have their times."""
+        return _middle(self.time_unit)
+
+    @property
+    def usual_length(self) -> float:
+        """The unit of length of summaries in µm."""
+        if self.length_unit is None:
+            return self.radius
+        return _middle(self.length_unit)
+
+    def describe(self) -> dict[str, Any]:
+        """Return this as plain values for JSON."""
+
+        def plain(value: Any) -> Any:
+            if isinstance(value, Range):
+                return {"low": value.low, "high": value.high, "scale": value.scale}
+            return value
+
+        return {name: plain(value) for name, value in vars(self).items()}
+
+
+@dataclass(frozen=True)
+class View:
+    """Looks at the runs of a bank through one microscope.
+
+    Attributes
+    ----------
+    names : tuple of str
+        What is unknown: parameters of the cell, then units.
+    ranges : tuple of Range
+        Their prior.
+    run : ndarray of int, shape (look,)
+        The run of each look.
+    part : ndarray, shape (look, name)
+        The unknowns, as parts 0 to 1 of their ranges.
+    told : list of Summary
+    summaries : ndarray, shape (look, summary)
+    unit : ndarray, shape (look,)
+        How many µm R_0 is in the look.
+    outcomes : dict of str to int
+        What became of the looks that were tried: how many were seen, and why others were not.
+    """
+
+    names: tuple[str, ...]
+    ranges: tuple[Range, ...]
+    run: np.ndarray
+    part: np.ndarray
+    told: list[Summary]
+    summaries: np.ndarray
+    unit: np.ndarray
+    outcomes: dict[str, int]
+
+
+def look(
+    bank: Bank, microscope: Microscope, looks: int = 2, seed: int = 0, which: Any = None
+) -> View:
+    """Return a bank as a microscope would have seen it.
+
+    Each look draws what is unknown of the units, when in the run the film begins, and the noise.
+    A run that ended before the film would have, or that rests, is counted and not seen: the cell
+    that was filmed lived and moved.
+
+    Raises
+    ------
+    InputError
+        If no run gives such a film.
+    """
+    numbers = np.arange(len(bank)) if which is None else np.asarray(which)
+    unknown = microscope.unknown
+    names = (*bank.prior.cell_names, *unknown)
+    ranges = (*(bank.prior.ranges[n] for n in bank.prior.cell_names), *unknown.values())
+    found: list[tuple[np.ndarray, ...]] = []
+    outcomes: dict[str, int] = {}
+    told: list[Summary] = []
+    for block in bank.blocks(numbers):
+        for again in range(looks):
+            seen, rows, part, unit, ended = _seen(bank, block, microscope, seed, again)
+            for what, count in ended.items():
+                outcomes[what] = outcomes.get(what, 0) + count
+            if seen is None:
+                continue
+            told, values = summaries(seen)
+            if isinstance(microscope.length_unit, (float, Range)) and microscope.outlines:
+                told, values = _with_size(told, values, seen)
+            cell = np.column_stack(
+                [
+                    bank.prior.ranges[n].part(bank.parameters[block.runs[rows], i])
+                    for i, n in enumerate(bank.prior.cell_names)
+                ]
+            )
+            found.append((block.runs[rows], np.column_stack([cell, part]), values, unit))
+    if not found:
+        raise InputError(
+            f"no run of {bank.path} gives a film of {microscope.frames} frames of "
+            f"{microscope.frame:g} s ({_counted(outcomes)}): give a shorter film, or a bank of "
+            "longer runs"
+        )
+    run, part, values, unit = (np.concatenate(column) for column in zip(*found, strict=True))
+    return View(names, ranges, run, part, told, values, unit, outcomes)
+
+
+def _seen(
+    bank: Bank, block: Block, microscope: Microscope, seed: int, again: int
+) -> tuple[Films | None, np.ndarray, np.ndarray, np.ndarray, dict[str, int]]:
+    count = block.runs.size
+    random = np.random.default_rng((seed, again, int(block.runs[0])))
+    draws = {name: r.value(random.random(count)) for name, r in microscope.unknown.items()}
+    part = np.column_stack(
+        [r.part(draws[name]) for name, r in microscope.unknown.items()] or [np.empty((count, 0))]
+    )
+    time = draws.get(TIME_UNIT, np.full(count, _middle(microscope.time_unit)))
+    needed = (microscope.frames - 1) * microscope.frame / time
+    there = (block.records - 1) * films.SAVE_EVERY
+    outcome = bank.outcomes[block.runs]
+    resting = outcome == "resting"
+    failed = (outcome == "failed") | (outcome == "killed")
+    short = (needed > there + 1e-9) & ~resting & ~failed
+    rows = np.flatnonzero(~resting & ~short & ~failed)
+    ended = {
+        "seen": rows.size,
+        "resting": int(resting.sum()),
+        "failed": int(failed.sum()),
+    }
+    for name in np.unique(outcome[short]):
+        told = "longer than the run" if name == "completed" else f"ended before: {name}"
+        ended[told] = int((short & (outcome == name)).sum())
+    if not rows.size:
+        return None, rows, part[rows], np.empty(0), ended
+    begin = random.random(count)[rows] * (there - needed)[rows]
+    at = begin[:, None] + np.arange(microscope.frames) * (microscope.frame / time[rows])[:, None]
+    path = _at(block.centroid[rows], at)
+    modes = _at(block.modes[rows], at) if microscope.outlines else None
+    if modes is None:
+        unit = draws[LENGTH_UNIT][rows] if LENGTH_UNIT in draws else None
+    elif LENGTH_UNIT in draws:
+        unit = draws[LENGTH_UNIT][rows]
+    elif microscope.length_unit is None:
+        area = np.pi * np.sum(films.WAVES * np.abs(modes) ** 2, axis=-1)
+        radius = np.sqrt(np.maximum(np.median(area, axis=1), 1e-12) / np.pi)
+        unit = microscope.radius / radius
+    else:
+        unit = None
+    if unit is None:
+        unit = np.full(rows.size, _middle(microscope.length_unit))
+    path, modes = _noisy(path, modes, microscope, unit, random)
+    scale = unit / microscope.usual_length
+    step = microscope.frame / microscope.usual_time
+    path = path * scale[:, None]
+    modes = None if modes is None else modes * scale[:, None, None]
+    return Films(step, path, modes), rows, part[rows], unit, ended
+
+
+def _noisy(
+    path: np.ndarray,
+    modes: np.ndarray | None,
+    microscope: Microscope,
+    unit: np.ndarray,
+    random: np.random.Generator,
+) -> tuple[np.ndarray, np.ndarray | None]:
+    """Shift each frame by the error of position, and the edge by that of the pixels."""
+    if microscope.error > 0.0:
+        error = (microscope.error / unit)[:, None]
+        path = path + error * (
+            random.standard_normal(path.shape) + 1j * random.standard_normal(path.shape)
+        )
+    if modes is None or microscope.pixel <= 0.0:
+        return path, modes
+    pixel = microscope.pixel / unit
+    edge = films.edge_of_modes(modes)
+    slope = films.edge_of_modes(1j * films.WAVES * modes)
+    along = np.maximum(np.abs(slope), 1e-12)
+    # Errors of pixels beside each other are independent: per node they shrink where a node stands
+    # for several pixels.
+    length = 2.0 * np.pi * along.mean(axis=(1, 2))
+    together = np.sqrt(np.minimum(films.NODES * pixel / length, 1.0))
+    noise = (EDGE_ERROR * pixel * together)[:, None, None] * random.standard_normal(edge.shape)
+    rough = edge - 1j * slope / along * noise
+    seen = films.modes_of_edge(rough.real, rough.imag)
+    # The centroid of the area moves with its edge.
+    area = np.pi * np.sum(films.WAVES * np.abs(modes) ** 2, axis=-1)
+    aside = 2.0 * np.pi * (edge * noise * along).mean(axis=-1) / area
+    seen[..., films.MODES] -= aside
+    return path + aside, seen
+
+
+def _at(values: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Interpolate films between records: of each row at its own times, shape (row, frame, ...)."""
+    place = at / films.SAVE_EVERY
+    before = np.clip(np.floor(place + 1e-9).astype(int), 0, values.shape[1] - 2)
+    part = np.clip(place - before, 0.0, 1.0)
+    row = np.arange(len(values))[:, None]
+    if values.ndim == 3:
+        part = part[..., None]
+    return np.asarray((1.0 - part) * values[row, before] + part * values[row, before + 1])
+
+
+def _with_size(
+    told: list[Summary], values: np.ndarray, seen: Films
+) -> tuple[list[Summary], np.ndarray]:
+    """Add the size of the cell, which summaries in its own radius do not have."""
+    assert seen.modes is not None
+    area = np.pi * np.sum(films.WAVES * np.abs(seen.modes) ** 2, axis=-1)
+    size = 0.5 * np.log(np.maximum(np.median(area, axis=1), 1e-12) / np.pi)
+    return [*told, Summary("log radius", "length", True)], np.column_stack([values, size])
+
+
+def summaries_of(seen: Films, microscope: Microscope) -> tuple[list[Summary], np.ndarray]:
+    """Return the same numbers of a film that somebody brings, in the units of `look`."""
+    told, values = summaries(seen)
+    if isinstance(microscope.length_unit, (float, Range)) and microscope.outlines:
+        told, values = _with_size(told, values, seen)
+    return told, values
+
+
+def _middle(given: float | Range | None) -> float:
+    if isinstance(given, Range):
+        return float(given.value(np.array(0.5)))
+    assert given is not None
+    return float(given)
+
+
+def _counted(outcomes: dict[str, int]) -> str:
+    return ", ".join(f"{name} {count}" for name, count in outcomes.items() if count)
+
+
+__all__ = ["EDGE_ERROR", "Microscope", "Prior", "View", "look", "summaries_of"]
