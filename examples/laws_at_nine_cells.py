@@ -23,10 +23,10 @@ CELLS = (
 laws, around = cc.laws, cc.surroundings
 KINDS: dict[str, dict[str, Any]] = {
     "paper": {},
-    "catch-slip": {"laws": laws.CatchSlip()},
+    "catch-slip": {"laws": laws.CatchSlip(catch=40.0, slip=0.6)},
     "stiffness": {"laws": laws.Stiffness(chi=0.7)},
     "load": {"laws": laws.PolymerizationUnderLoad(stall=1500.0)},
-    "swept-myosin": {"laws": laws.SweptMyosin()},
+    "swept-myosin": {"laws": laws.SweptMyosin(sweep=0.5)},
     "bond-noise": {"solver": "stochastic", "bonds": 3000.0, "noise_seed": 1},
     "tension-gradient": {"surroundings": around.TensionGradient(mu=100.0)},
     "electric-field": {"surroundings": around.ElectricField(x=5.0)},

@@ -68,6 +68,7 @@ def temperature(work: Path) -> None:
 def laws(work: Path) -> None:
     """Cells under other laws and in other surroundings."""
     command("examples/laws.py", IMAGES / "laws")
+    command("examples/laws_at_nine_cells.py", IMAGES / "laws", "docs/laws_nine_cells.md")
 
 
 def branches(work: Path) -> None:

@@ -14,7 +14,7 @@ class SweptMyosin(Law):
     the balance of forces has no unique root: such a value is refused.
     """
 
-    source: ClassVar[str] = "after Barnhart et al., Curr. Biol. 25, 1 (2015)"
+    source: ClassVar[str] = "after Barnhart et al., PNAS 112, 5045 (2015)"
     sweep = Parameter(0.0, 0.0, 100.0, "part of the contraction that goes with the flow")
 
     def contraction(self, phi: Any, r: Any, p: Any) -> Any:

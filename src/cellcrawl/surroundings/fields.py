@@ -71,7 +71,7 @@ class TensionGradient(Surrounding):
     ``V`` is the velocity of the cell and ``c`` its centroid: the front bears more than the rear.
     """
 
-    source: ClassVar[str] = "Lieber et al., Curr. Biol. 25, 1409 (2015), for the gradient"
+    source: ClassVar[str] = "Lieber et al., Biophys. J. 108, 1599 (2015), for the gradient"
     mu = Parameter(
         0.0, 0.0, 1e6, "gain of tension over one cell radius ahead at a speed of one R_0 k_off0"
     )
