@@ -30,6 +30,7 @@ def page(result: dict[str, Any]) -> str:
         f"unknown within a factor of {film['time_unit'][1] / film['time_unit'][0]:.2g}. What falls "
         "short of the aim is in bold.",
         "",
+        *([f"**Not of the present code.** {result['note']}", ""] if "note" in result else []),
         *_table("R²", "R2", result, ASKED),
         *_coverage(result),
         "",

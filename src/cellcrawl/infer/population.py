@@ -205,6 +205,8 @@ def compare(control: Sequence[Fit], treated: Sequence[Fit]) -> Comparison:
     Means over cells, and their scatter with its correlations between parameters: what cells of one
     condition differ by, noise of the fit included, is the error. Each parameter in turn is let move
     alone; the better that explains the shift of all means, the likelier it is the one.
+    A bias that the fits of both conditions share is not in the error: with a small bank intervals
+    of the factor are too narrow.
     """
     one, other = _alike(control), _alike(treated)
     _alike([*one, *other])
