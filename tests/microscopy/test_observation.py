@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -80,6 +81,14 @@ def test_a_run_through_the_microscope_and_a_file_comes_back(tmp_path):
         assert one.t == pytest.approx(other.t)
     area = back.dataset["area"].values.ravel()
     np.testing.assert_allclose(area, run["area"].values[::2], rtol=0.03)
+
+
+@pytest.mark.parametrize("length", ["µm", "\N{GREEK SMALL LETTER MU}m", "um"])
+def test_micrometres_are_written_as_imagej_reads_them(tmp_path, length):
+    pytest.importorskip("tifffile")
+    seen = dataclasses.replace(cc.observe(moving_circle()), length_units=length, time_units="s")
+    read = cc.read_outlines(seen.write(tmp_path / "cell.tif"))
+    assert read[0].length_units == "µm"
 
 
 @pytest.mark.parametrize(

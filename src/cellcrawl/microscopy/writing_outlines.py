@@ -92,9 +92,9 @@ def write_label_tiff(
 ) -> None:
     """Write labels (frame, row, column) as an ImageJ hyperstack with pixel size and interval."""
     tifffile = reader("tifffile", "label TIFFs")
-    told: dict[str, Any] = {"axes": "TYX", "unit": length or "pixel", "finterval": frame}
+    told: dict[str, Any] = {"axes": "TYX", "unit": _ascii(length or "pixel"), "finterval": frame}
     if time:
-        told["tunit"] = time
+        told["tunit"] = _ascii(time)
     tifffile.imwrite(
         target,
         labels,
@@ -103,6 +103,14 @@ def write_label_tiff(
         metadata=told,
         compression="zlib",
     )
+
+
+def _ascii(unit: str) -> str:
+    """Return a unit as ImageJ keeps it: a micro sign is its escape."""
+    escaped = unit.replace("\N{MICRO SIGN}", r"\u00B5").replace(
+        "\N{GREEK SMALL LETTER MU}", r"\u00B5"
+    )
+    return escaped.encode("ascii", "backslashreplace").decode()
 
 
 def _by_name(target: Path) -> str:
