@@ -35,4 +35,8 @@ for panel, law in zip(panels, ("printed", "consistent"), strict=True):
     cc.plot.diagram(runs, "r_on", "zeta_1", legend=panel is panels[1], size=7, ax=panel)
     cc.plot.boundaries(boundaries(cell), legend=panel is panels[0], ax=panel)
     panel.set_title(f"{law} tension law", loc="left")
+lines = panels[0].get_legend()
+figure.legend(lines.legend_handles, [text.get_text() for text in lines.get_texts()],
+              loc="outside lower center", ncols=2, fontsize="small")  # fmt: skip
+lines.remove()
 figure.savefig(folder / "diagram.png", dpi=150)

@@ -34,7 +34,7 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     if hasattr(session.config, "workerinput") or not workers or option.collectonly:
         return
     run = "import sys, cellcrawl as cc; [cc.simulate(solver=s, t_end=0.01) for s in sys.argv[1:]]"
-    shares = (["adaptive"], ["paper", "spline"])
+    shares = (["adaptive"], ["paper", "spline", "stochastic"])
     children = [subprocess.Popen([sys.executable, "-c", run, *share]) for share in shares]
     for child in children:
         child.wait()
