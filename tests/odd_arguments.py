@@ -113,7 +113,8 @@ def _fits(call: Callable[..., Call], folder: Path) -> Iterator[Call]:
         quick(infer.choose), "cellcrawl.infer.choose", observed=cells[0], banks=[known, other],
         **filmed,
     )  # fmt: skip
-    yield call(refused(infer.save_network), "cellcrawl.infer.save_network", fit=fits[0],
+    yield call(refused(infer.save_network, "only a fit by method='npe'"),
+               "cellcrawl.infer.save_network", fit=fits[0],
                path=folder / "network.npz")  # fmt: skip
     yield call(infer.together, fits=fits)
     yield call(infer.compare, control=fits, treated=fits)
@@ -126,15 +127,15 @@ def _fits(call: Callable[..., Call], folder: Path) -> Iterator[Call]:
     )  # fmt: skip
 
 
-def refused(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Call what a fit without a network is refused by; odd values are answered as ever."""
+def refused(function: Callable[..., Any], because: str = "") -> Callable[..., Any]:
+    """Call what is refused even as it stands, for a reason; odd values are answered as ever."""
 
     @functools.wraps(function)
     def wrapped(**arguments: Any) -> Any:
         try:
             return function(**arguments)
         except cc.InputError as error:
-            if "only a fit by method='npe'" not in str(error):
+            if because not in str(error):
                 raise
 
     return wrapped
@@ -250,6 +251,45 @@ def _calls(folder: Path) -> Iterator[Call]:
     yield call(ways.from_circle, parameters=cell, name="r_on", near=57.0, speed=0.01, laws="paper")
     yield call(ways.onset_slope, parameters=cell, name="r_on", near=57.0, laws=None)
     yield call(ways.from_run, run=slow.dataset(), rest_area=math.pi)
+    round_cell = cc.Parameters(r_on=60, zeta_1=400)
+    yield call(
+        refused(ways.orbit, "orbit"),
+        "cellcrawl.branches.orbit",
+        run=run,
+        rest_area=None,
+        nodes=None,
+    )
+    yield call(
+        refused(ways.continue_orbit, "Orbit"), "cellcrawl.branches.continue_orbit", start=None,
+        name="r_on", to=30.0, output=None, overwrite=False, spectra=False, most_orbits=2,
+        largest_step=0.1, nodes=None,
+    )  # fmt: skip
+    missing = folder / "no-orbits.h5"
+    yield call(
+        refused(ways.open_orbits, "no-orbits"), "cellcrawl.branches.open_orbits", path=missing
+    )
+    yield call(
+        refused(ways.resume_orbits, "no-orbits"), "cellcrawl.branches.resume_orbits", path=missing,
+        to=None, most_orbits=2, largest_step=0.1,
+    )  # fmt: skip
+    yield call(
+        ways.lyapunov_exponent, parameters=round_cell, start=None, t_end=40.0, settle=0.0,
+        laws=None, nodes=None,
+    )  # fmt: skip
+    yield call(
+        ways.lyapunov_map, parameters=round_cell, r_on=[60.0], zeta_1=[400.0], seed=1, t_end=40.0,
+        laws=None, executor=InProcess(),
+    )  # fmt: skip
+    yield call(
+        ways.basins, parameters=round_cell, starts=1, amplitude=0.01, t_end=20.0, laws=None,
+        executor=InProcess(),
+    )  # fmt: skip
+    yield call(
+        refused(ways.threshold_kick, "kick"), "cellcrawl.branches.threshold_kick",
+        parameters=round_cell, kick=ways.Swollen, low=0.0, high=0.01, within=0.5, t_end=20.0,
+        laws=None,
+    )  # fmt: skip
+    yield call(ways.Swollen, kick=0.01, front=1e-4)
     yield call(ways.gliding, parameters=cell, laws=None)
     yield call(ways.turning, parameters=cell.replace(r_on=50), laws=None)
     yield call(
@@ -366,7 +406,7 @@ def _calls(folder: Path) -> Iterator[Call]:
     # modes
     yield call(cc.classify, dataset=long, use_size=True)
     yield call(cc.classify_track, t=t, x=x, y=y, cell_radius=1.0, status="completed")
-    yield call(lambda used: cc.cite(used), "cellcrawl.cite", used=long)
+    yield call(lambda used: cc.cite(used), "cellcrawl.cite", used=run)
     yield call(cc.modes.combine, results=[cc.classify(long)])
     yield call(cc.modes.is_long_enough, dataset=long)
     # one dimension

@@ -173,7 +173,7 @@ def test_a_mirrored_start_gives_the_mirrored_run():
 
 
 def test_waves_under_another_law_grow_as_its_slopes_say():
-    laws, p = cc.laws.CatchSlip(), P.replace(r_on=30.0)
+    laws, p = cc.laws.CatchSlip(catch=40.0, slip=0.6), P.replace(r_on=30.0)
     tension = od.still_tension(p, laws)
     (rate, _) = od.flat_growth_rates(p, 3.0, laws=laws)
     run = od.simulate_flat_edge(
