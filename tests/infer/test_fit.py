@@ -143,7 +143,10 @@ def test_several_cells_tell_more_than_one_and_a_drug_is_found(bank):
         cc.infer.compare(fits[:2], fits[6:])
 
 
-@pytest.mark.xfail(reason="errors are of scatter between cells: a bias that fits share is not in")
+@pytest.mark.xfail(
+    reason="errors are of scatter between cells: a bias that fits share is not in",
+    strict=False,  # it misses by a hundredth, and other linear algebra rounds otherwise
+)
 def test_an_interval_of_a_change_holds_the_change(bank):
     unit = {"time_unit": (0.8, 1.25, "log")}
     control = [cell(seed) for seed in range(30, 36)]
