@@ -174,7 +174,7 @@ def walk(
     """Go on with a branch until it ends."""
     from cellcrawl.branches.storage import Keeper
 
-    with Keeper(output, overwrite, branch) as keeper:
+    with Keeper(output, overwrite) as keeper:
         try:
             status = _walk(branch, walker, most_states, largest, keeper)
         except KeyboardInterrupt:

@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
-import contextlib
-import json
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Final, Self
+from typing import Any, Final
 
 import numpy as np
-import xarray as xr
 
-from cellcrawl.arguments import checked, file_path
+from cellcrawl.arguments import checked
 from cellcrawl.branches.orbit import Orbit
 from cellcrawl.branches.orbit_branch import OrbitBranch, OrbitPoint, OrbitWalker, walk
-from cellcrawl.branches.setting import Setting, bounds_of
+from cellcrawl.branches.setting import bounds_of
 from cellcrawl.branches.shooting import Basis
-from cellcrawl.branches.storage import complex_arrays, complex_parts, parts_of, ragged, write_arrays
-from cellcrawl.errors import InputError, StorageError
-from cellcrawl.laws import as_law
-from cellcrawl.locks import locked
-from cellcrawl.parameters import Parameters
-from cellcrawl.simulation.checksums import damaged, digest
+from cellcrawl.branches.storage import (
+    FileKeeper,
+    complex_arrays,
+    complex_parts,
+    parts_of,
+    ragged,
+    read_arrays,
+    setting_of,
+    write_arrays,
+)
 from cellcrawl.validation import real_number
 
 KIND: Final = "cellcrawl orbits"
@@ -29,40 +29,16 @@ SCHEMA: Final = 1
 _RESUMABLE = ("running", "interrupted", "orbits")
 
 
-class Keeper:
+class Keeper(FileKeeper):
     """Writes a branch of orbits while it grows; does nothing without a path."""
 
     def __init__(self, path: str | Path | None, overwrite: bool) -> None:
-        self._path = None if path is None else file_path("output", path)
-        self._stack = contextlib.ExitStack()
-        if self._path is None:
-            return
-        if self._path.suffix != ".nc":
-            raise InputError(f"output = {str(self._path)!r}: orbits are a file that ends in .nc")
-        if self._path.exists() and not overwrite:
-            raise InputError(
-                f"{self._path} exists: give another output, go on with resume_orbits, or ask to "
-                "overwrite it"
-            )
-
-    def __enter__(self) -> Self:
-        if self._path is not None:
-            lock = self._path.with_name(self._path.name + ".lock")
-            self._stack.enter_context(locked(lock, self._path, remove=True))
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._stack.close()
+        super().__init__(path, overwrite, "orbits are", "resume_orbits")
 
     def keep(self, branch: OrbitBranch, walker: OrbitWalker) -> None:
         """Write the branch."""
-        if self._path is not None:
-            write(branch, walker, self._path)
+        if self.path is not None:
+            write(branch, walker, self.path)
 
 
 def write(branch: OrbitBranch, walker: OrbitWalker, path: Path) -> None:
@@ -139,27 +115,10 @@ def resume_orbits(
 
 
 def _read(path: Path) -> tuple[OrbitBranch, OrbitWalker]:
-    if not path.exists():
-        raise InputError(f"there are no orbits at {path}")
-    try:
-        with xr.open_dataset(path, engine="h5netcdf") as saved:
-            attributes = dict(saved.attrs)
-            arrays = {str(name): saved[name].values for name in saved.data_vars}
-    except Exception as error:  # HDF5 and its readers have many
-        raise StorageError(f"{path} cannot be read: {type(error).__name__}") from None
-    if attributes.get("kind") != KIND:
-        raise InputError(f"{path} holds no orbits of cellcrawl")
-    if int(attributes.get("branch_schema", 0)) > SCHEMA:
-        raise StorageError(f"{path} was written by a newer cellcrawl: update cellcrawl")
-    told = attributes.pop("checksum", None)
-    attributes["branch_schema"] = int(attributes["branch_schema"])
-    if told != digest(attributes, {}, arrays):
-        raise damaged(path)
-    header = json.loads(attributes["branch"])
-    name = header["name"]
-    base = Setting(
-        Parameters.from_dict(header["parameters"]), as_law(header["laws"]), header["rest_area"]
+    header, arrays = read_arrays(
+        path, KIND, SCHEMA, f"there are no orbits at {path}", f"{path} holds no orbits of cellcrawl"
     )
+    name, base = header["name"], setting_of(header)
     kept: list[dict[str, Any]] = [{} for _ in header["each"]]
     if header["spectra"]:
         found = complex_parts(arrays, "multipliers")

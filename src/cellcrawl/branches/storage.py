@@ -36,27 +36,26 @@ _PAUSE = 2.0  # seconds between two writes
 _SUFFIXES: Final = (".nc",)
 
 
-class Keeper:
-    """Writes a branch now and then while it grows; does nothing without a path."""
+class FileKeeper:
+    """Holds the file that a branch is written to while it grows; none without a path."""
 
-    def __init__(self, path: str | Path | None, overwrite: bool, branch: Branch) -> None:
-        self._path = None if path is None else file_path("output", path)
-        self._written = 0.0
+    def __init__(self, path: str | Path | None, overwrite: bool, what: str, resume: str) -> None:
+        self.path = None if path is None else file_path("output", path)
         self._stack = contextlib.ExitStack()
-        if self._path is None:
+        if self.path is None:
             return
-        if self._path.suffix not in _SUFFIXES:
-            raise InputError(f"output = {str(self._path)!r}: a branch is a file that ends in .nc")
-        if self._path.exists() and not overwrite:
+        if self.path.suffix not in _SUFFIXES:
+            raise InputError(f"output = {str(self.path)!r}: {what} a file that ends in .nc")
+        if self.path.exists() and not overwrite:
             raise InputError(
-                f"{self._path} exists: give another output, go on with resume_branch, or ask to "
+                f"{self.path} exists: give another output, go on with {resume}, or ask to "
                 "overwrite it"
             )
 
     def __enter__(self) -> Self:
-        if self._path is not None:
-            lock = self._path.with_name(self._path.name + ".lock")
-            self._stack.enter_context(locked(lock, self._path, remove=True))
+        if self.path is not None:
+            lock = self.path.with_name(self.path.name + ".lock")
+            self._stack.enter_context(locked(lock, self.path, remove=True))
         return self
 
     def __exit__(
@@ -67,11 +66,19 @@ class Keeper:
     ) -> None:
         self._stack.close()
 
+
+class Keeper(FileKeeper):
+    """Writes a branch now and then while it grows; does nothing without a path."""
+
+    def __init__(self, path: str | Path | None, overwrite: bool) -> None:
+        super().__init__(path, overwrite, "a branch is", "resume_branch")
+        self._written = 0.0
+
     def keep(self, branch: Branch, walker: Walker, *, last: bool = False) -> None:
         """Write the branch if it is the last time, or some seconds after the time before."""
-        if self._path is None or not (last or time.monotonic() - self._written > _PAUSE):
+        if self.path is None or not (last or time.monotonic() - self._written > _PAUSE):
             return
-        write(branch, walker, self._path)
+        write(branch, walker, self.path)
         self._written = time.monotonic()
 
 
@@ -149,6 +156,36 @@ def write_arrays(
         raise StorageError(f"cannot write {path}: {error.strerror or error}") from None
 
 
+def read_arrays(
+    path: Path, kind: str, schema: int, missing: str, other: str
+) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+    """Return header and arrays of what `write_arrays` wrote, once its checksum is right."""
+    if not path.exists():
+        raise InputError(missing)
+    try:
+        with xr.open_dataset(path, engine="h5netcdf") as saved:
+            attributes = dict(saved.attrs)
+            arrays = {str(name): saved[name].values for name in saved.data_vars}
+    except Exception as error:  # HDF5 and its readers have many
+        raise StorageError(f"{path} cannot be read: {type(error).__name__}") from None
+    if attributes.get("kind") != kind:
+        raise InputError(other)
+    if int(attributes.get("branch_schema", 0)) > schema:
+        raise StorageError(f"{path} was written by a newer cellcrawl: update cellcrawl")
+    told = attributes.pop("checksum", None)
+    attributes["branch_schema"] = int(attributes["branch_schema"])
+    if told != digest(attributes, {}, arrays):
+        raise damaged(path)
+    return json.loads(attributes["branch"]), arrays
+
+
+def setting_of(header: dict[str, Any]) -> Setting:
+    """Return the setting that a header tells."""
+    return Setting(
+        Parameters.from_dict(header["parameters"]), as_law(header["laws"]), header["rest_area"]
+    )
+
+
 @checked
 def open_branch(path: str | Path) -> Branch:
     """Return the branch in a file.
@@ -195,27 +232,10 @@ def resume_branch(
 def _read(path: Path) -> tuple[Branch, Walker]:
     from cellcrawl.branches.continuation import Walker
 
-    if not path.exists():
-        raise InputError(f"there is no branch at {path}")
-    try:
-        with xr.open_dataset(path, engine="h5netcdf") as saved:
-            attributes = dict(saved.attrs)
-            arrays = {str(name): saved[name].values for name in saved.data_vars}
-    except Exception as error:  # HDF5 and its readers have many
-        raise StorageError(f"{path} cannot be read: {type(error).__name__}") from None
-    if attributes.get("kind") != KIND:
-        raise InputError(f"{path} holds no branch of cellcrawl")
-    if int(attributes.get("branch_schema", 0)) > SCHEMA:
-        raise StorageError(f"{path} was written by a newer cellcrawl: update cellcrawl")
-    told = attributes.pop("checksum", None)
-    attributes["branch_schema"] = int(attributes["branch_schema"])
-    if told != digest(attributes, {}, arrays):
-        raise damaged(path)
-    header = json.loads(attributes["branch"])
-    name = header["name"]
-    base = Setting(
-        Parameters.from_dict(header["parameters"]), as_law(header["laws"]), header["rest_area"]
+    header, arrays = read_arrays(
+        path, KIND, SCHEMA, f"there is no branch at {path}", f"{path} holds no branch of cellcrawl"
     )
+    name, base = header["name"], setting_of(header)
     unknowns, phis = parts_of(arrays, "unknowns"), parts_of(arrays, "phi")
     states = [
         SteadyState(

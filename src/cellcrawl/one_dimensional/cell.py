@@ -12,9 +12,10 @@ from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.laws import as_law
 from cellcrawl.laws.law import PAPER, Law
-from cellcrawl.laws.rest import local_values, rest_state
+from cellcrawl.laws.rest import rest_state
 from cellcrawl.parameters import Parameters
 from cellcrawl.physics.force_balance import solve_bonds
+from cellcrawl.solvers.conditions import edge_column
 from cellcrawl.validation import real_number, shown
 
 _STIFFEST = 1e9
@@ -88,8 +89,7 @@ def still_tension(parameters: Parameters, laws: Any = PAPER) -> float:
 
 def edge_of(parameters: Parameters, laws: Law, nodes: int) -> np.ndarray:
     """Return the local parameters at the nodes, shape (rows of the law, nodes)."""
-    values = local_values(parameters, laws)
-    return np.repeat([[values[name]] for name in laws.rows], nodes, axis=1)
+    return np.repeat(edge_column(parameters, laws), nodes, axis=1)
 
 
 def off_rates_at(velocity: np.ndarray) -> np.ndarray:

@@ -76,7 +76,7 @@ class Conditions:
 
         With ``before``, a jump at ``time`` has not happened yet.
         """
-        column = _edge_column(self._at(time, before=before), self.laws)
+        column = edge_column(self._at(time, before=before), self.laws)
         if self.schedule.law_numbers:
             column = column.copy()
             for name, value in self.schedule.laws_at(time, before=before).items():
@@ -109,6 +109,7 @@ class Conditions:
 
 
 @functools.lru_cache(maxsize=16)
-def _edge_column(parameters: Parameters, laws: Law) -> np.ndarray:
+def edge_column(parameters: Parameters, laws: Law) -> np.ndarray:
+    """Return the local parameters of a cell, shape (rows of the law, 1); not to be written to."""
     values = local_values(parameters, laws)
     return np.array([[values[name]] for name in laws.rows])
