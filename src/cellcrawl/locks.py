@@ -91,4 +91,6 @@ def _taken(path: Path) -> FileLock | None:
         with contextlib.suppress(Timeout):
             lock.acquire()
             return lock
+    if not path.exists():
+        path.touch()  # nobody holds it: says why it cannot be there
     return None

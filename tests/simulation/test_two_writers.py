@@ -7,11 +7,13 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import cellcrawl as cc
+from cellcrawl.errors import StorageError
 from cellcrawl.locks import is_locked, locked
 from cellcrawl.simulation import recorder
 from cellcrawl.simulation.storage import RunStore
@@ -184,3 +186,10 @@ def test_a_tilde_is_the_home_folder(tmp_path, monkeypatch):
     assert cc.movie(cc.open_run("~/run.nc"), "~/run.gif", size=(64, 64)).parent == tmp_path
     with pytest.raises(cc.InputError, match="no such home folder"):
         cc.open_run("~nobody-of-that-name/run.nc")
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="there is no folder without files")
+def test_a_folder_that_takes_no_file_is_not_called_held_by_another():
+    lock, run = Path("/proc/run.nc.lock"), Path("/proc/run.nc")
+    with pytest.raises(StorageError, match="cannot write in /proc"), locked(lock, run):
+        pass
