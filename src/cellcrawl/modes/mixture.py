@@ -177,9 +177,9 @@ def _heading(random: np.random.Generator, kind: str, when: np.ndarray, records: 
             return swung
         case _:  # switching spin
             changes = np.cumsum(random.uniform(0.05, 0.3, 60))
-            way = np.where(np.searchsorted(changes, part) % 2 == 0, 1.0, -1.0)
+            sense = np.where(np.searchsorted(changes, part) % 2 == 0, 1.0, -1.0)
             turns = _even_in_logarithm(random, 2.0, max(2.5, total / 6.0))
-            return 2.0 * math.pi * turns / when.size * np.cumsum(way)
+            return 2.0 * math.pi * turns / when.size * np.cumsum(sense)
 
 
 def _recorded(

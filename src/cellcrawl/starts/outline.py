@@ -143,8 +143,9 @@ class FromOutline:
         damping = np.exp(
             -0.5 * (2.0 * math.pi * self.smoothing * fourier.wavenumbers(curve.nodes)) ** 2
         )
-        smooth = np.fft.ifft(np.fft.fft(values) * damping).real
-        return np.clip(smooth, 0.0, 1.0)
+        smooth: np.ndarray = np.fft.ifft(np.fft.fft(values) * damping).real
+        bound: np.ndarray = np.clip(smooth, 0.0, 1.0)
+        return bound
 
 
 def _check_size(area: float) -> None:
