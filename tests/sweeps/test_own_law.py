@@ -1,4 +1,4 @@
-"""The law of the guide, as its reader saves it, in a sweep of 100 runs: killed, resumed, on Dask."""
+"""The law of the guide, as its reader saves it, in 100 runs: killed, resumed, on Dask."""
 
 from __future__ import annotations
 
