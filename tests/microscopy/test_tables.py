@@ -353,3 +353,50 @@ def test_many_tracks_are_read_in_no_time(tmp_path):
     assert len(tracks) == count
     assert tracks.t.size == count * records
     np.testing.assert_allclose(tracks[777].x, x[777], atol=6e-4)
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("Zelle", "Zeit [min]", "X [µm]", "Y [µm]"),
+        ("Cellule", "Temps [min]", "X (µm)", "Y (µm)"),
+        ("TrackID", "Time (min)", "Position X (um)", "Position Y (um)"),
+    ],
+)
+def test_names_of_other_languages_and_units_in_them_are_known(names, tmp_path):
+    content = text(names, ";", ",").encode("cp1252")
+    tracks = read(tmp_path, content)
+    must_be_the_two_cells(tracks)
+    assert (tracks.source.length_units, tracks.source.time_units) == ("µm", "min")
+
+
+def test_a_column_of_units_tells_the_unit_if_all_rows_agree(tmp_path):
+    lines = ["Position X,Position Y,Unit,Category,Collection,Time,TrackID"]
+    lines += [f"{x},{y},um,Spot,Position,{t},{name}" for name, t, x, y in RECORDS]
+    tracks = read(tmp_path, "\n".join(lines))
+    must_be_the_two_cells(tracks)
+    assert tracks.source.length_units == "µm"
+    mixed = read(tmp_path, "\n".join([*lines[:-1], lines[-1].replace(",um,", ",nm,")]))
+    assert mixed.source.length_units == ""
+
+
+def test_objects_that_ilastik_did_not_link_belong_to_no_track(tmp_path):
+    lines = ["frame,labelimageId,trackId,lineageId,Center_of_the_object_0,Center_of_the_object_1"]
+    lines += [f"{t:g},1,{'ab'.index(n) + 1},1,{x},{y}" for n, t, x, y in RECORDS]
+    lines += [f"{t},9,-1,-1,{50 * t},7" for t in (0, 1, 2)]
+    tracks = read(tmp_path, "\n".join(lines))
+    must_be_the_two_cells(tracks, ("1", "2"))
+    assert tracks.source.y_down
+    assert [one.records for one in tracks.left_out] == [3]
+
+
+def test_tracks_of_icy_are_read(tmp_path):
+    def track(name):
+        rows = [values for one, *values in RECORDS if one == name]
+        points = "".join(f'<detection t="{t:g}" x="{x}" y="{y}" z="0"/>' for t, x, y in rows)
+        return f'<track id="{name}">{points}</track>'
+
+    group = f'<trackgroup description="g">{track("a")}{track("b")}</trackgroup>'
+    tracks = read(tmp_path, f"<root><trackfile version='1'/>{group}</root>", "cells.xml")
+    must_be_the_two_cells(tracks)
+    assert (tracks.source.length_units, tracks.source.y_down) == ("pixel", True)

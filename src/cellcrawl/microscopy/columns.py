@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from cellcrawl.errors import InputError, nearest_name
 from cellcrawl.validation import shown
 
-ROLES = ("id", "t", "frame", "x", "y", "z", "parent", "group")
+ROLES = ("id", "t", "frame", "x", "y", "z", "parent", "group", "unit")
 
 # Normalised names (lower case, letters and digits only), the surest first.
 _IDS = (
@@ -20,8 +20,12 @@ _IDS = (
     *("cells", "cellidx", "objectid", "objid", "object", "individualid", "individual", "animalid"),
     *("animal", "subject", "ids", "uid", "id", "identity", "entity", "name", "label", "labels"),
     *("nucleus", "nucleusid", "seriesid", "tracklabel", "objectlabel", "celllabel", "labelid"),
+    *("zelle", "zellid", "zellnr", "zellnummer", "spur", "spurid", "cellule", "celula", "piste"),
 )
-_TIMES = ("positiont", "t", "time", "times", "timestamp", "elapsedtime", "elapsed", "timestamps")
+_TIMES = (
+    *("positiont", "t", "time", "times", "timestamp", "elapsedtime", "elapsed", "timestamps"),
+    *("zeit", "temps", "tiempo", "tempo"),
+)
 _FRAMES = (
     *("frame", "frames", "frameid", "framenumber", "frameno", "frameindex", "framenr", "framenum"),
     *(
@@ -47,6 +51,7 @@ _FRAMES = (
         "tidx",
     ),
     *("metadatatimepoint", "timeidx", "timeid", "timepointid", "framet", "frameidx"),
+    *("bild", "bildnr", "bildnummer", "schicht", "fotograma"),
 )
 _ABSCISSAS = (
     *("x", "positionx", "xposition", "posx", "xpos", "locationcenterx", "areashapecenterx"),
@@ -56,8 +61,12 @@ _ABSCISSAS = (
     *("xmicrons", "xpx", "xpixel", "xpixels", "xmm", "xnm", "meanx", "xmean", "cellx", "xcell"),
 )
 _STEMS = ("locationcenterx", "areashapecenterx", "positionx", "centroidx")
-_ROW_COLUMN = (("col", "row"), ("column", "row"), ("centroid1", "centroid0"), ("cols", "rows"))
+_ROW_COLUMN = (
+    *(("col", "row"), ("column", "row"), ("centroid1", "centroid0"), ("cols", "rows")),
+    *(("centeroftheobject0", "centeroftheobject1"), ("objectcenter0", "objectcenter1")),
+)
 _PARENTS = ("parenttrackid", "parentid", "parent", "mother", "motherid", "parenttrack")
+_UNITS = ("unit", "units", "positionunit", "lengthunit", "einheit")
 _GROUPS = (
     *("movie", "movieid", "video", "videoid", "file", "filename", "well", "wellid", "fov", "site"),
     *("metadatawell", "metadatasite", "metadataplate", "metadatafield", "field", "fieldofview"),
@@ -134,6 +143,11 @@ def length_unit(text: str) -> str:
     return _LENGTHS.get(text.strip().lower(), text.strip())
 
 
+def is_length(text: str) -> bool:
+    """Return whether a text is a unit of length that people write."""
+    return text.strip().lower() in _LENGTHS
+
+
 def time_unit(text: str) -> str:
     """Return the usual sign of a unit of time, or the text as it is."""
     return _SPANS.get(text.strip().lower(), text.strip())
@@ -152,7 +166,7 @@ def recognise(names: Sequence[str], units: Sequence[str] = ()) -> Columns | None
     if pair is None:
         return None
     places["x"], places["y"] = pair
-    for role, known in (("id", _IDS), ("frame", _FRAMES), ("parent", _PARENTS)):
+    for role, known in (("id", _IDS), ("frame", _FRAMES), ("parent", _PARENTS), ("unit", _UNITS)):
         found = _first(plains, known, set(places.values()))
         if found is not None:
             places[role] = found

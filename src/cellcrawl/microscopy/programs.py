@@ -64,6 +64,8 @@ def _program(form: Form, columns: Columns) -> tuple[str, bool, str]:
         if order.index("y") < order.index("x"):
             kind = "ultrack" if "parenttrackid" in names else "napari"
             return f"{kind} tracks table", True, "pixel"
+    if {"labelimageid", "trackid", "lineageid"} <= names:
+        return "ilastik tracking table", True, "pixel"
     if {"positionx", "trackid", "collection"} <= names:
         return "Imaris table", False, ""
     return "plain table", False, ""

@@ -91,9 +91,9 @@ def _text(path: Path, head: bytes) -> str:
         for word, form in (("<TrackMate", "trackmate"), ("<Tracks", "trackmate tracks")):
             if word in text:
                 return form
-        if "<particle" in text or "TrackContest" in text:
+        if any(word in text for word in ("<particle", "TrackContest", "<trackgroup")):
             return "trackmate tracks"
-        raise InputError(f"{path} is XML that is not known: TrackMate's is read")
+        raise InputError(f"{path} is XML that is not known: TrackMate's and Icy's are read")
     if text.startswith(("{", "[")) and re.search(r'"(type|features|coordinates)"', text):
         return "geojson"
     if re.search(r"^cls\s*=\s*\(?['\"]celltool|^points\s*=[\\\s]*array\(", text, re.MULTILINE):

@@ -13,6 +13,8 @@ import pyarrow.compute as pc
 from cellcrawl.errors import InputError
 from cellcrawl.microscopy.columns import (
     Columns,
+    is_length,
+    length_unit,
     recognise,
     side_by_side,
     time_column,
@@ -84,14 +86,17 @@ def read_table_tracks(path: Path, reading: Reading) -> Tracks:
         depth = cells.numbers(columns.places["z"])[0]
         if np.nanmax(depth, initial=-np.inf) > np.nanmin(depth, initial=np.inf):
             notes.append(f"{columns.told()['z']} is left aside: tracks are of the plane")
+    name, y_down, length = program
+    if name.startswith("ilastik") and "-1" in ids:  # objects that it could not link
+        codes, ids = _without(codes, ids, "-1")
+    length = columns.length_units or _unit_in(cells, columns) or length
     told = columns.told()
     told = {name: told[name] for name in ("id", "group", role, "x", "y") if name in told}
-    name, y_down, length = program
     source = Source(
         str(path),
         f"{name} ({form})",
         told,
-        columns.length_units or length,
+        length,
         units,
         y_down,
         tuple(notes),
@@ -159,6 +164,21 @@ def _ids(cells: Cells, columns: Columns) -> tuple[np.ndarray, list[str]]:
             for pair in pairs[order]
         ]
     return codes, names
+
+
+def _without(codes: np.ndarray, ids: list[str], name: str) -> tuple[np.ndarray, list[str]]:
+    """Return codes and ids with the records of one id belonging to no track."""
+    gone = ids.index(name)
+    kept = np.where(codes == gone, -1, codes - (codes > gone))
+    return kept, [one for one in ids if one != name]
+
+
+def _unit_in(cells: Cells, columns: Columns) -> str:
+    """Return the unit of length that a column of its own gives for all rows, "" for none."""
+    if "unit" not in columns.places:
+        return ""
+    _, words = cells.words(columns.places["unit"])
+    return length_unit(words[0]) if len(words) == 1 and is_length(words[0]) else ""
 
 
 def _blocks(form: Form, codes: np.ndarray) -> tuple[np.ndarray, list[str]]:

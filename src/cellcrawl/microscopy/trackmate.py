@@ -241,33 +241,41 @@ def _times(model: Model, reading: Reading) -> tuple[np.ndarray, str]:
 
 
 def _simple_tracks(path: Path, reading: Reading) -> Tracks:
-    """Read the simple file: one particle a track, one detection a record, times in frames."""
+    """Read the simple file: one particle a track, one detection a record, times in frames.
+
+    Icy's and that of the Particle Tracking Challenge are the same, but for the names.
+    """
     codes: list[int] = []
     rows: list[tuple[float, float, float]] = []
-    particles, length, time, interval = 0, "", "", 0.0
+    ids: list[str] = []
+    length, time, interval, form = "", "", 0.0, "XML of particle tracks"
     for event, element in _elements(path, ("start", "end")):
         if event == "start" and element.tag == "Tracks":
+            form = "TrackMate XML of tracks"
             length = length_unit(element.get("spaceUnits", ""))
             time = time_unit(element.get("timeUnits", ""))
             interval = float(element.get("frameInterval") or 0.0)
+        elif event == "start" and element.tag == "trackgroup":
+            form, length = "Icy tracks", "pixel"
         elif event == "end" and element.tag == "detection":
             try:
                 rows.append(tuple(float(element.attrib[name]) for name in ("t", "x", "y")))  # type: ignore[arg-type]
             except (KeyError, ValueError) as error:
                 raise InputError(f"{path}: a detection has no number for {error}") from None
-            codes.append(particles)
-        elif event == "end" and element.tag == "particle":
-            particles += 1
+            codes.append(len(ids))
+        elif event == "end" and element.tag in ("particle", "track"):
+            ids.append(element.get("id", str(len(ids))))
             element.clear()
     if not rows:
-        raise InputError(f"{path} holds no tracks of TrackMate")
+        raise InputError(f"{path} holds no tracks")
+    if len(set(ids)) < len(ids):
+        ids = [str(number) for number in range(len(ids))]
     frames, x, y = np.array(rows).T
-    source = Source(str(path), "TrackMate XML of tracks", {}, length, "", True)
+    source = Source(str(path), form, {}, length, "", True)
     if reading.frame_interval is None and interval > 0.0 and time != "frame":
         source = Source(str(path), source.format, {}, length, time, True)
         t = interval * frames
     else:
         source, t = reading.timed(source, frames)
     source, x, y = reading.scaled(source, x, y)
-    ids = [str(number) for number in range(particles)]
     return tracks_of_records(np.array(codes), ids, t, x, y, source)
