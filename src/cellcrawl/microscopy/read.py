@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import contextlib
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from cellcrawl.arguments import checked
-from cellcrawl.errors import InputError
+from cellcrawl.errors import CellcrawlError, InputError
 from cellcrawl.microscopy.cellpose_masks import read_cellpose_masks
 from cellcrawl.microscopy.geff_graphs import read_geff
 from cellcrawl.microscopy.grouping import tracks_of_records
@@ -96,21 +97,8 @@ def read_tracks(
     reading = Reading.of(columns, frame_interval, pixel_size, image_coordinates)
     file = Path(path)
     form = form_of_file(file)
-    if form == "table":
-        return read_table_tracks(file, reading)
-    if form in ("trackmate", "trackmate tracks"):
-        return read_trackmate_tracks(file, reading)
-    if form in ("geff", "folder of geff"):
-        return read_geff(_geff_within(file, form), reading)
-    if form == "numpy array":
-        return _napari_array(file, reading)
-    reading.without_columns(str(file))
-    if form == "cell tracking challenge":
-        outlines, parents = read_cell_tracking_challenge(file, reading)
-        return with_parents(outlines.tracks, parents)
-    if form == "folder":
-        return _folder_outlines(file, reading).tracks
-    return _OUTLINES[form](file, reading).tracks
+    with _damage_told(file):
+        return _tracks_of(file, form, reading)
 
 
 @checked
@@ -150,6 +138,41 @@ def read_outlines(
     reading = Reading.of(None, frame_interval, pixel_size, image_coordinates)
     file = Path(path)
     form = form_of_file(file)
+    with _damage_told(file):
+        return _outlines_of(file, form, reading)
+
+
+@contextlib.contextmanager
+def _damage_told(path: Path) -> Iterator[None]:
+    """Turn what a broken file makes a reader stumble over into one line that names the file."""
+    try:
+        yield
+    except CellcrawlError:
+        raise
+    except (ArithmeticError, LookupError, TypeError, ValueError, EOFError, MemoryError) as error:
+        told = " ".join(str(error).split())[:120] or type(error).__name__
+        raise InputError(f"{path} seems to be damaged: {told}") from error
+
+
+def _tracks_of(file: Path, form: str, reading: Reading) -> Tracks:
+    if form == "table":
+        return read_table_tracks(file, reading)
+    if form in ("trackmate", "trackmate tracks"):
+        return read_trackmate_tracks(file, reading)
+    if form in ("geff", "folder of geff"):
+        return read_geff(_geff_within(file, form), reading)
+    if form == "numpy array":
+        return _napari_array(file, reading)
+    reading.without_columns(str(file))
+    if form == "cell tracking challenge":
+        outlines, parents = read_cell_tracking_challenge(file, reading)
+        return with_parents(outlines.tracks, parents)
+    if form == "folder":
+        return _folder_outlines(file, reading).tracks
+    return _OUTLINES[form](file, reading).tracks
+
+
+def _outlines_of(file: Path, form: str, reading: Reading) -> Outlines:
     if form == "cell tracking challenge":
         return read_cell_tracking_challenge(file, reading)[0]
     if form == "folder":
@@ -196,7 +219,8 @@ def _folder_outlines(folder: Path, reading: Reading) -> Outlines:
             form = form_of_file(path)
             if form not in _OUTLINES:
                 raise InputError("it holds no outlines")
-            found.append((path, _OUTLINES[form](path, reading)))
+            with _damage_told(path):
+                found.append((path, _OUTLINES[form](path, reading)))
         except InputError as error:
             out.append(LeftOut(path.name, str(error).replace(str(path), "it"), 0))
     if not found:

@@ -73,13 +73,20 @@ def _binary(path: Path, head: bytes) -> str:
     if head.startswith(b"\x89HDF"):
         raise InputError(f"{path} is an HDF5 file: runs end in .nc; btrack's is read as its .csv")
     if head.startswith(b"PK"):
-        with zipfile.ZipFile(path) as archive:
-            names = archive.namelist()
+        try:
+            with zipfile.ZipFile(path) as archive:
+                names = archive.namelist()
+        except (zipfile.BadZipFile, OSError) as error:
+            raise InputError(
+                f"{path} is not whole: the archive cannot be opened ({error})"
+            ) from None
         if any(name.lower().endswith(".roi") for name in names):
             return "imagej roi"
         if any(name.startswith("xl/") for name in names):
             raise InputError(f"{path} is a spreadsheet: save it as CSV and give that")
         raise InputError(f"{path} is an archive without ImageJ regions: unpack it first")
+    if head.startswith(b"PAR1"):
+        raise InputError(f"{path} is a Parquet table: write it as CSV and give that")
     if head.startswith((b"RDX", b"\x1f\x8b", b"BZh", b"\xfd7zXZ")):
         raise InputError(f"{path} is packed (R's .rda, gzip, ...): write it as CSV and give that")
     return ""

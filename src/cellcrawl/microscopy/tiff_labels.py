@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import logging
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -26,7 +29,7 @@ def read_label_tiff(path: Path, reading: Reading) -> Outlines:
     """Read a label TIFF: a frame a page, every cell its own number in all frames."""
     tifffile = reader("tifffile", "label TIFFs")
     try:
-        with tifffile.TiffFile(path) as file:
+        with _complaints() as complaints, tifffile.TiffFile(path) as file:
             series = file.series[0]
             stack, axes = series.asarray(), series.axes
             size, length, interval, time = _scales(file)
@@ -34,6 +37,8 @@ def read_label_tiff(path: Path, reading: Reading) -> Outlines:
         raise InputError(f"{path} cannot be read as a TIFF: {error}") from None
     frames = _as_frames(path, stack, axes)
     notes = []
+    if complaints:
+        notes.append(f"the file seems to be damaged, frames may be missing: {complaints[0]}")
     if reading.pixel_size is None and size is not None:
         reading = replace(reading, pixel_size=size, length_units=length)
         notes.append(f"pixel size {size:.6g} {length} from the file".rstrip())
@@ -44,6 +49,24 @@ def read_label_tiff(path: Path, reading: Reading) -> Outlines:
         notes.append("all cells have one number: the largest piece of a frame counts as the cell")
     source = Source(str(path), "label TIFF", {}, "pixel", "", True, tuple(notes))
     return outlines_of_labels(list(frames), source, reading)
+
+
+@contextlib.contextmanager
+def _complaints() -> Iterator[list[str]]:
+    """Gather what tifffile logs of a file that it reads as far as it can."""
+    found: list[str] = []
+
+    class Gather(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            found.append(" ".join(record.getMessage().split())[:120])
+
+    log, handler = logging.getLogger("tifffile"), Gather(logging.WARNING)
+    others, passed_on = log.handlers[:], log.propagate
+    log.handlers, log.propagate = [handler], False
+    try:
+        yield found
+    finally:
+        log.handlers, log.propagate = others, passed_on
 
 
 def read_cell_tracking_challenge(folder: Path, reading: Reading) -> tuple[Outlines, dict[str, str]]:
