@@ -25,6 +25,15 @@ def outlines():
     ]
 
 
+def refusal(read, file):
+    """Return what is said of a file that is refused, "" for one that is read."""
+    try:
+        read(file)
+    except cc.InputError as error:
+        return str(error)
+    return ""
+
+
 @pytest.mark.parametrize("name", FORMS)
 def test_a_damaged_file_is_refused_in_one_line_or_read_as_far_as_it_goes(name, outlines, tmp_path):
     whole = tmp_path / name
@@ -43,11 +52,9 @@ def test_a_damaged_file_is_refused_in_one_line_or_read_as_far_as_it_goes(name, o
         file = tmp_path / f"{number}-{name}"
         file.write_bytes(data)
         for read in (cc.read_outlines, cc.read_tracks):
-            try:
-                read(file)
-            except cc.InputError as error:
-                assert "\n" not in str(error)
-                assert file.name in str(error)
+            said = refusal(read, file)
+            assert "\n" not in said
+            assert not said or file.name in said
 
 
 @pytest.mark.parametrize(
