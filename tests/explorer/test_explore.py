@@ -25,10 +25,47 @@ def test_a_link_read_and_written_is_the_same_cell():
     p = cc.Parameters(r_on=30.5, zeta_1=570, D=0.1, elasticity="consistent")
     found = links.read("#" + links.write(p, 7))
     assert (found.parameters, found.seed, found.schedule) == (p, 7, None)
+    soft = links.read(links.write(p, 7, cc.laws.Stiffness(chi=0.6)))
+    assert (soft.parameters, soft.laws) == (p, cc.laws.Stiffness(chi=0.6))
+
+
+def test_a_link_holds_ramps_and_the_times_of_discs():
+    found = links.read(
+        "v=2&r_on=20&law=stiffness&laws.chi=0.8&changes=1~3,r_on:26,laws.chi:1;5,r_on:30"
+        "&islands=0,0,3;1,2,1,4.5&pillars=3,0,1,2,6"
+    )
+    ramp = {"r_on": [(1, 20), (3, 26), (5, 26), (5, 30)], "laws.chi": [(1, 0.8), (3, 1)]}
+    assert found.schedule == cc.Schedule(ramp)
+    islands, pillars = found.surroundings
+    assert islands.discs.tolist() == [[0, 0, 3, -1e12, 1e12], [1, 2, 1, 4.5, 1e12]]
+    assert pillars.discs.tolist() == [[3, 0, 1, 2, 6]]
+
+
+def test_a_law_of_ones_own_is_not_on_the_page():
+    class Own(cc.laws.Law):
+        def off_rate(self, phi, p):
+            return 2.0 * cc.laws.exp(phi)
+
+    with pytest.raises(cc.InputError, match="catch-slip"):
+        cc.explore(laws=Own())
+    with pytest.raises(cc.InputError, match="sweep"):
+        cc.explore(laws=cc.laws.SweptMyosin(sweep=5.0))
+    assert "law=stiffness&laws.chi=0.5" in cc.explore(laws=cc.laws.Stiffness(chi=0.5)).text
 
 
 @pytest.mark.parametrize(
-    "link", ["v=2&r_on=3", "r_on=x", "r_on=1e9", "islands=1,2", "pokes=kick,1,2,3", "changes=1,q:2"]
+    "link",
+    [
+        "v=3&r_on=3",
+        "law=none",
+        "law=stiffness&laws.chi=9",
+        "changes=1~x,r_on:3",
+        "r_on=x",
+        "r_on=1e9",
+        "islands=1,2",
+        "pokes=kick,1,2,3",
+        "changes=1,q:2",
+    ],
 )
 def test_a_bad_link_is_one_line(link):
     with pytest.raises(cc.InputError):

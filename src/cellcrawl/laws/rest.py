@@ -7,13 +7,68 @@ from typing import Any, Final, Self
 
 import numpy as np
 
+from cellcrawl._compile import inlined_kernel
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
+from cellcrawl.laws.functions import balance, binding, off_rate, partials, velocity
 from cellcrawl.laws.law import LOCAL, PAPER, Law
 from cellcrawl.parameters.dimensionless import Parameters
 
-_FORCES: Final = np.concatenate([np.linspace(1e-6, 1.0, 400), np.linspace(1.0, 40.0, 2000)[1:]])
-_HALVINGS = 200
+TRIALS: Final = 2400  # forces on a bond at which a change of sign is looked for
+_HALVINGS: Final = 200
+_NEWTON_STEPS: Final = 30
+_ROUND_OFF: Final = 1e-14
+_BY_N_OF_BINDING, _BY_SIGMA_OF_BALANCE = 8, 2  # of `partials`
+
+
+@inlined_kernel
+def trial_force(k: int) -> float:
+    """Force on a bond number ``k`` of those looked at: denser below 1."""
+    return 1e-6 + k * 0.0025 if k < 400 else 1.0 + (k - 400) * 0.0195
+
+
+@inlined_kernel
+def at_bond_force(
+    laws: Any, phi: float, kappa: float, edge: np.ndarray
+) -> tuple[float, float, float, float]:
+    """Velocity of an edge whose bonds bear ``phi``, off-rate, bound fraction and tension.
+
+    ``edge`` holds the local parameters, shape (rows, 1).
+    """
+    r = off_rate(laws, phi, edge, 0)
+    n = 0.5
+    for _ in range(_NEWTON_STEPS):
+        slope = partials(laws, phi, r, n, 0.0, kappa, edge, 0)[_BY_N_OF_BINDING]
+        step = binding(laws, phi, r, n, edge, 0) / slope
+        n = n - step
+        if not abs(step) > _ROUND_OFF * (1.0 + abs(n)):
+            break
+    sigma = 1000.0
+    for _ in range(_NEWTON_STEPS):
+        slope = partials(laws, phi, r, n, sigma, kappa, edge, 0)[_BY_SIGMA_OF_BALANCE]
+        step = balance(laws, phi, r, n, sigma, kappa, edge, 0)[0] / slope
+        sigma = sigma - step
+        if not abs(step) > _ROUND_OFF * (1.0 + abs(sigma)):
+            break
+    return velocity(laws, phi, r, sigma, kappa, edge, 0), r, n, sigma
+
+
+@inlined_kernel
+def force_at_rest(laws: Any, low: float, high: float, kappa: float, edge: np.ndarray) -> float:
+    """Force on a bond at which the edge rests, between two at which it moves in and out."""
+    outward = at_bond_force(laws, low, kappa, edge)[0] > 0.0
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        if middle in (low, high):
+            break
+        if (at_bond_force(laws, middle, kappa, edge)[0] > 0.0) == outward:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+_FORCES: Final = np.array([trial_force(k) for k in range(TRIALS)])
 
 
 @dataclass(frozen=True)
@@ -53,7 +108,9 @@ def rest_states(
         speed = np.broadcast_to(_at(laws, p, _FORCES)[0], _FORCES.shape)
     out, finite = speed > 0.0, np.isfinite(speed)
     changes = np.flatnonzero((out[:-1] != out[1:]) & finite[:-1] & finite[1:])
-    return [_between(laws, p, _FORCES[k], _FORCES[k + 1]) for k in changes]
+    edge = np.array([[p[name]] for name in laws.rows])
+    with np.errstate(all="ignore"):
+        return [_between(laws, k, curvature, edge) for k in changes.tolist()]
 
 
 @checked
@@ -126,15 +183,9 @@ def zero_in(laws: Law, what: str, values: dict[str, Any], name: str, guess: floa
     return x
 
 
-def _between(laws: Law, p: dict[str, Any], low: float, high: float) -> RestState:
-    outward = _at(laws, p, low)[0] > 0.0
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            break
-        if (_at(laws, p, middle)[0] > 0.0) == outward:
-            low = middle
-        else:
-            high = middle
-    _, r, n, sigma = _at(laws, p, low)
-    return RestState(float(low), float(r), float(n), float(sigma))
+def _between(laws: Law, k: int, curvature: float, edge: np.ndarray) -> RestState:
+    """Return the rest between two trial forces, in the bits of a kernel."""
+    kernels = laws.compiled
+    phi = force_at_rest(kernels, trial_force(k), trial_force(k + 1), curvature, edge)
+    _, r, n, sigma = at_bond_force(kernels, phi, curvature, edge)
+    return RestState(float(phi), float(r), float(n), float(sigma))
