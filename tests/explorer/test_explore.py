@@ -7,6 +7,8 @@ import pytest
 import cellcrawl as cc
 from cellcrawl.command_line.main import run as command
 from cellcrawl.explorer import cards, links, presets
+from cellcrawl.explorer.content import content
+from tests.explorer import node
 from tests.explorer.browser import Browser, chromium
 
 
@@ -70,6 +72,22 @@ def test_a_law_of_ones_own_is_not_on_the_page():
 def test_a_bad_link_is_one_line(link):
     with pytest.raises(cc.InputError):
         links.read(link)
+
+
+@node.needs_node
+def test_the_page_reads_every_link_that_is_offered_as_the_package_does(tmp_path):
+    offered = [one.link for one in (*presets.PRESETS, *cards.CARDS)]
+    code = "return given.map((link) => $link.read(link));"
+    for link, seen in zip(
+        offered, node.run("link", content(), code, offered, tmp_path), strict=True
+    ):
+        assert seen["complaints"] == []
+        asked, setup = links.read(link), seen["setup"]
+        numbers = {f"laws.{name}": value for name, value in asked.laws.values.items()}
+        assert setup["parameters"] == {**asked.parameters.to_dict(), **numbers}
+        assert (setup["seed"], setup["rtol"]) == (asked.seed, asked.rtol)
+        count = len(setup["pokes"]) + sum(bool(setup[kind]) for kind in ("islands", "pillars"))
+        assert count == len(asked.surroundings)
 
 
 def quick_or_slow(preset: presets.Preset) -> object:

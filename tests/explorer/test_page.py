@@ -503,3 +503,25 @@ def test_a_clip_has_the_frames_that_were_drawn_and_lasts_as_long(browser, page, 
     assert frames == pytest.approx(browser.value("page.clip.frames"), abs=4)
     assert seconds == pytest.approx(took, abs=1.0)
     assert browser.value("document.querySelector('[data-take=clip]').textContent") == "Record clip"
+
+
+def test_a_screen_reader_hears_of_a_new_mode_once(browser, page):
+    opened(browser, page, "#v=1&r_on=16&zeta_1=600&seed=2&paused=true")
+    browser.value(
+        "window.heard = []; new MutationObserver(() => heard.push(document.getElementById("
+        "'announced').textContent)).observe(document.getElementById('announced'), "
+        "{ childList: true, characterData: true, subtree: true })"
+    )
+    for t in range(10, 70, 2):
+        run_to(browser, t)
+        browser.value("page.tell(page.place), new Promise((done) => setTimeout(done))")
+    heard = browser.value("heard")
+    assert "gliding" in heard[-1]
+    assert len(heard) <= 4
+    labels = browser.value(
+        "[...document.querySelectorAll('canvas, input, select, textarea, button')]"
+        ".filter((e) => e.offsetParent && e.getAttribute('aria-hidden') !== 'true' && "
+        "!(e.getAttribute('aria-label') || e.labels?.length || e.textContent.trim()))"
+        ".map((e) => e.outerHTML)"
+    )
+    assert labels == []

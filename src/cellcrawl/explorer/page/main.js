@@ -64,7 +64,7 @@ class Page {
   load(setup, to = 0) {
     const { place } = this;
     place.run = DATA.run && !this.left ? new Recording() : new Run(this.module, setup);
-    place.told = undefined;
+    place.told = place.news = undefined;
     place.element.querySelector(".ended").hidden = true;
     place.stage.center = null;
     place.named = 0;
@@ -97,7 +97,7 @@ class Page {
       place.stage.field = this.view.field;
       place.stage.camera = this.view.camera;
       place.stage.draw(place.run, { jump: this.fresh });
-      const text = clock(place.run.now);
+      const { law } = place.run.setup, text = clock(place.run.now) + (law === "paper" ? "" : ` · ${DATA.laws[law].title}`);
       if (place.clockText !== text) place.element.querySelector(".clock").textContent = place.clockText = text;
     }
     drawn();
@@ -140,6 +140,9 @@ class Page {
     if (place !== this.place) return;
     const text = mode.mode && mode.words ? `${mode.words[0].toUpperCase()}${mode.words.slice(1)}.` : ended ? "" : "The round cell has no front yet: it takes a while to break its symmetry.";
     if ($("said").textContent !== text) $("said").textContent = text;
+    const news = `${mode.mode}${run.status}`; // a screen reader is told once, not with every number
+    if (place.news !== news) $("announced").textContent = `At ${clock(run.now)}: ${ended ? STATUS[run.status] : words}`;
+    place.news = news;
   }
 
   change(values) {
