@@ -134,6 +134,8 @@ def test_a_saved_run_is_played_back(tmp_path):
         browser.wait("window.page && page.run.now > 0.5")
         browser.value("page.run.advance(4)")
         assert browser.value("page.run.seen.tension") == pytest.approx(float(run["tension"][-1]))
+        browser.value("document.querySelector('[data-take=python]').click()")
+        assert "saved run" in browser.value("document.getElementById('notice').textContent")
         x = browser.value("[...page.run.cell.fields.x]")
         assert x == pytest.approx(run["x"].values[-1].tolist(), abs=2e-4)
         assert browser.errors == []

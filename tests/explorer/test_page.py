@@ -502,6 +502,8 @@ def test_a_clip_has_the_frames_that_were_drawn_and_lasts_as_long(browser, page, 
     frames, seconds = imageio_ffmpeg.count_frames_and_secs(str(file))
     assert frames == pytest.approx(browser.value("page.clip.frames"), abs=4)
     assert seconds == pytest.approx(took, abs=1.0)
+    told = next(imageio_ffmpeg.read_frames(str(file)))  # what the head of the file says
+    assert told["duration"] == pytest.approx(took, abs=1.0)
     assert browser.value("document.querySelector('[data-take=clip]').textContent") == "Record clip"
 
 

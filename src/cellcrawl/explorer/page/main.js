@@ -9,7 +9,8 @@ import { PhaseMap } from "./map.js";
 import { Kymograph, line } from "./strips.js";
 import { Recording } from "./recording.js";
 import { read, write } from "./link.js";
-import { clip, csv, drawn, embed, png, python, save } from "./take.js";
+import { csv, embed, png, python, save } from "./take.js";
+import { clip, drawn } from "./clip.js";
 import { thumbnail } from "./thumbnails.js";
 import { loadModule } from "./load.js";
 import { clock, digits, isPhysical, shown, usePhysical } from "./units.js";
@@ -375,6 +376,7 @@ class Page {
   }
 
   take(what, button) {
+    if (this.run.recorded && ["link", "python", "embed"].includes(what)) return this.notice("This is a saved run, played back: its own file tells how it was made, and no link does.");
     const link = location.href.split("#")[0] + write(this.run.setup, { ...this.view, to: Math.round(this.run.now * 10) / 10 });
     const text = { link: () => link, python: () => python(this.run), embed: () => embed(location.href.split("#")[0], write(this.run.setup, { ...this.view, view: $("level").value, to: 0 }), $("level").value) }[what];
     if (text) {

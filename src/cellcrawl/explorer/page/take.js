@@ -4,7 +4,6 @@ import { NEVER, POINTS } from "./cell.js";
 import { DATA } from "./data.js";
 import { PARAMETERS } from "./run.js";
 
-const LONGEST_CLIP = 60; // seconds
 const plain = (value) => (Number.isInteger(value) && Math.abs(value) < 1e15 ? `${value}.0` : String(value));
 
 export function save(blob, name) {
@@ -76,40 +75,4 @@ export function csv(run) {
 
 export function png(place, run, then) {
   place.canvas.toBlob((blob) => then(blob, `cell-t${run.now.toFixed(1)}.png`), "image/png");
-}
-
-let recorder = null;
-
-// A picture has been drawn: it is a frame of the clip, if one is being recorded.
-export function drawn() {
-  if (!recorder?.track?.requestFrame) return;
-  recorder.track.requestFrame();
-  recorder.frames += 1;
-}
-
-// Begin to record a canvas, or end it and save the clip.
-export function clip(canvas, button, notice) {
-  if (recorder) return recorder.stop();
-  if (!canvas.captureStream || typeof MediaRecorder === "undefined") return notice("This browser cannot record a clip of a canvas.");
-  const type = ["video/mp4;codecs=avc1", "video/webm;codecs=vp9", "video/webm"].find((name) => MediaRecorder.isTypeSupported(name));
-  if (!type) return notice("This browser cannot record a clip.");
-  const byHand = typeof CanvasCaptureMediaStreamTrack !== "undefined" && "requestFrame" in CanvasCaptureMediaStreamTrack.prototype;
-  const parts = [], kept = button.textContent, stream = canvas.captureStream(byHand ? 0 : 50);
-  recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: 8e6 });
-  recorder.track = stream.getVideoTracks()[0];
-  recorder.frames = 0;
-  recorder.ondataavailable = (event) => event.data.size && parts.push(event.data);
-  const began = performance.now();
-  const ticking = setInterval(() => (button.textContent = `Stop (${Math.floor((performance.now() - began) / 1000)} s)`), 250);
-  const limit = setTimeout(() => recorder?.stop(), LONGEST_CLIP * 1000);
-  recorder.onstop = () => {
-    clearInterval(ticking);
-    clearTimeout(limit);
-    button.textContent = kept;
-    recorder.track.stop();
-    recorder = null;
-    save(new Blob(parts, { type }), `cell.${type.includes("mp4") ? "mp4" : "webm"}`);
-  };
-  recorder.start(1000);
-  return recorder;
 }
