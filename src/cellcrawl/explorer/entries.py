@@ -13,6 +13,7 @@ import numba
 import numpy as np
 from numba.core import types
 
+from cellcrawl._elementary import natural_logarithm
 from cellcrawl.curve.crossing import crossing_edges
 from cellcrawl.laws import SHIPPED, Law
 from cellcrawl.laws.law import PAPER
@@ -177,6 +178,12 @@ def crossing(count: int, x_at: Any, y_at: Any) -> int:
     """Return an edge of the outline that crosses another, -1 if there is none."""
     first, _ = crossing_edges(_carray(x_at, (count,)), _carray(y_at, (count,)))
     return first
+
+
+def logarithm(x: float, whole_at: Any) -> int:
+    """Put the logarithm that the package takes first in ``whole``."""
+    _carray(whole_at, (16,))[0] = natural_logarithm(x)
+    return REACHED
 
 
 def next_time(control_at: Any, end: float, whole_at: Any) -> int:
@@ -408,6 +415,7 @@ def entries() -> list[Entry]:
         Entry("start", start, takes(i32, i32, f64, f64, *[floats] * 4)),
         Entry("settle", settle, takes(i32, i32, *[floats] * 4)),
         Entry("crossing", crossing, takes(i32, floats, floats)),
+        Entry("logarithm", logarithm, takes(f64, floats)),
         Entry("next_time", next_time, takes(floats, f64, floats)),
     ]
     for kind, law in LAWS.items():

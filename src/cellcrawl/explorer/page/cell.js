@@ -19,9 +19,8 @@ export const FIELDS = ["x", "y", "theta", "curvature", "bound_fraction", "off_ra
 export const NEVER = 1e12; // as the package has it for a disc without begin and end
 export const ENDS = { [CODES.no_rest]: "no_rest", [CODES.unresolved_start]: "unresolved", [CODES.no_root]: "out_of_range", [CODES.broken]: "out_of_range", [CODES.step_too_small]: "step_too_small", [CODES.unresolved]: "unresolved" };
 
-export function derived({ r_on, zeta_1, r_p, sigma_c, h, k_sigma, epsilon, elasticity }) {
-  // as `Parameters` has them, operation by operation
-  const y = Math.log(r_p);
+function derived({ r_on, zeta_1, r_p, sigma_c, h, k_sigma, epsilon, elasticity }, y) {
+  // as `Parameters` has them, operation by operation; y is log r_p
   const n_bar = r_on / (r_on + r_p);
   const sigma_bar = (r_p * y + zeta_1 * n_bar * y - sigma_c) / (1 + h);
   return { n_bar, sigma_bar, v_p: r_p * y, tension_rate: elasticity === "consistent" ? k_sigma / epsilon : k_sigma };
@@ -107,7 +106,8 @@ export class Cell {
     this.counters.fill(0n);
     this.ramp = null;
     this._fill(parameters);
-    let { n_bar, sigma_bar } = derived(parameters);
+    const y = this._logarithm(parameters.r_p);
+    let { n_bar, sigma_bar } = derived(parameters, y);
     if (this.law !== "paper") {
       const code = this._call(`rest_${this.kernelName}`, ...this._places("profile", "whole"));
       if (code) return ENDS[code];
@@ -124,7 +124,7 @@ export class Cell {
     const table = this._numbers("table", this.size);
     table.set([this.whole[0], sigma_bar, this.whole[1], 1 + origin, 0], this.size - L.scalars);
     this._call("settle", nodes, count, ...this._places("theta", "bound", "table", "work"));
-    this._numbers("y", nodes).fill(Math.log(parameters.r_p));
+    this._numbers("y", nodes).fill(y);
     this.set(parameters);
     return ENDS[this.advance(0)] ?? "";
   }
@@ -142,8 +142,14 @@ export class Cell {
     this.counters[L.restarting] = 1n;
   }
 
+  // Browsers' own logarithms differ in their last bits.
+  _logarithm(x) {
+    this._call("logarithm", x, this.at.whole);
+    return this.whole[0];
+  }
+
   _fill(parameters) {
-    const values = { ...parameters, ...derived(parameters), pressure: 0 };
+    const values = { ...parameters, ...derived(parameters, this._logarithm(parameters.r_p)), pressure: 0 };
     this.rows.forEach((name, row) => (this.profile[row] = values[name] ?? values[`laws.${name}`]));
     this.profile[this.rows.length] = values.tension_rate;
   }

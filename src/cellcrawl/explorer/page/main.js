@@ -179,7 +179,7 @@ class Page {
     $("map").setAttribute("aria-label", `Map of binding rate and adhesive friction. The cell is at binding rate ${digits(latest.r_on)}, adhesive friction ${digits(latest.zeta_1)}. Arrow keys move it.`);
     const key = this.run.preset;
     all("#shelf button").forEach((button) => button.setAttribute("aria-current", String(button.dataset.key === key)));
-    $("clean").hidden = !(this.run.setup.islands?.length || this.run.setup.pillars?.length);
+    $("clean").hidden = !["islands", "pillars"].some((kind) => this.run.lasting(kind).length);
     $("open").href = `${location.href.split("#")[0]}${write(this.run.setup, { ...this.view, view: "full", to: 0 })}`;
     this.mapDirty = true;
   }

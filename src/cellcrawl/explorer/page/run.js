@@ -1,6 +1,6 @@
 // A run: a cell from its start on, what is done to it, and what has been seen of it.
 
-import { Cell, ENDS, FIELDS, NEVER, POINTS, derived } from "./cell.js";
+import { Cell, ENDS, FIELDS, NEVER, POINTS } from "./cell.js";
 import { DATA } from "./data.js";
 import { classify } from "./rule.js";
 
@@ -22,9 +22,9 @@ export function usual(law = "paper") {
 
 // Why a law cannot be used with some parameters, or "".
 export function complaint(law, parameters) {
-  const { v_p } = derived(parameters);
-  if (law === "swept-myosin" && parameters["laws.sweep"] >= v_p / Math.max(parameters.sigma_c, 1e-300))
-    return `A sweep of ${v_p / parameters.sigma_c < 10 ? (v_p / parameters.sigma_c).toPrecision(3) : "so much"} or more gathers motors faster than the bonds can hold them: the forces have no one balance.`;
+  const limit = (parameters.r_p * Math.log(parameters.r_p)) / Math.max(parameters.sigma_c, 1e-300); // v_p / sigma_c
+  if (law === "swept-myosin" && parameters["laws.sweep"] >= limit)
+    return `A sweep of ${limit.toPrecision(3)} or more gathers motors faster than the bonds can hold them: the forces have no one balance.`;
   return "";
 }
 
