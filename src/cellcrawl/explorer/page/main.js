@@ -67,6 +67,8 @@ class Page {
     place.run = DATA.run && !this.left ? new Recording() : new Run(this.module, setup);
     place.told = place.news = undefined;
     place.element.querySelector(".ended").hidden = true;
+    const { law } = place.run.setup;
+    place.element.querySelector(".law").textContent = law === "paper" ? "" : `law: ${DATA.laws[law].title}`;
     place.stage.center = null;
     place.named = 0;
     this.catchUp = to;
@@ -98,7 +100,7 @@ class Page {
       place.stage.field = this.view.field;
       place.stage.camera = this.view.camera;
       place.stage.draw(place.run, { jump: this.fresh });
-      const { law } = place.run.setup, text = clock(place.run.now) + (law === "paper" ? "" : ` · ${DATA.laws[law].title}`);
+      const text = clock(place.run.now);
       if (place.clockText !== text) place.element.querySelector(".clock").textContent = place.clockText = text;
     }
     drawn();
@@ -334,6 +336,7 @@ class Page {
       this.again();
       second.run = new Run(this.module, { ...this.run.setup, parameters: { ...this.run.latest, ...other } });
       second.named = 0;
+      second.element.querySelector(".law").textContent = this.places[0].element.querySelector(".law").textContent;
       second.stage.center = null;
       this.active = 1;
     }

@@ -112,7 +112,7 @@ export class Run {
     if (discs.length >= DATA.layout.most_discs) return false;
     const rounded = disc.map((value) => Math.round(value * 100) / 100);
     discs.push(this.now > 0 ? [...rounded, this._soon()] : rounded);
-    this._ground(discs.at(-1)[3]);
+    this._ground();
     return true;
   }
 
@@ -121,13 +121,12 @@ export class Run {
     for (const kind of ["islands", "pillars"])
       if (this.now > 0) this.setup[kind] = this.setup[kind].map(([x, y, radius, begin = -NEVER, old = Infinity]) => [x, y, radius, begin, Math.min(old, Math.max(end, begin))]);
       else this.setup[kind] = [];
-    this._ground(end);
+    this._ground();
   }
 
-  _ground(from) {
+  _ground() {
     if (this.status !== "running") return;
     if (this.now === 0) return this.begin(this.setup);
-    this.changed = from;
     this.cell.paint(this.setup);
   }
 
@@ -284,12 +283,14 @@ export class Run {
   name() {
     if (this.status === "fragmented") return this.mode;
     const { recent } = this;
-    const used = this.indices(WINDOW).filter((k) => recent.t[k] >= this.changed);
+    const turns = [...this.setup.islands, ...this.setup.pillars].flatMap((disc) => disc.slice(3)).filter((time) => time <= this.now);
+    const since = Math.max(this.changed, ...turns);
+    const used = this.indices(WINDOW).filter((k) => recent.t[k] >= since);
     if (used.length < 12) return (this.mode = { mode: "", confidence: 0, words: "too early to tell" });
     const pick = (name) => Float64Array.from(used, (k) => recent[name][k]);
     const areas = pick("area").sort();
     const radius = Math.sqrt(areas[areas.length >> 1] / Math.PI);
-    this.mode = classify(pick("t"), pick("x"), pick("y"), radius, this.changed);
+    this.mode = classify(pick("t"), pick("x"), pick("y"), radius, since);
     return this.mode;
   }
 
