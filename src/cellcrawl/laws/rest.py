@@ -105,7 +105,7 @@ def rest_states(
         raise InputError(f"{laws.name}: {complaint}")
     p = {**local_values(parameters, laws), "kappa": curvature}
     with np.errstate(all="ignore"):
-        speed = np.broadcast_to(_at(laws, p, _FORCES)[0], _FORCES.shape)
+        speed = np.broadcast_to(edge_bearing(laws, p, _FORCES)[0], _FORCES.shape)
     out, finite = speed > 0.0, np.isfinite(speed)
     changes = np.flatnonzero((out[:-1] != out[1:]) & finite[:-1] & finite[1:])
     edge = np.array([[p[name]] for name in laws.rows])
@@ -161,8 +161,12 @@ class CellAtRest(Parameters):
         return self.rest.tension
 
 
-def _at(laws: Law, p: dict[str, Any], phi: Any) -> tuple[Any, Any, Any, Any]:
-    """Velocity of an edge whose bonds bear ``phi``, off-rate, bound fraction and tension."""
+def edge_bearing(laws: Law, p: dict[str, Any], phi: Any) -> tuple[Any, Any, Any, Any]:
+    """Velocity, off-rate, bound fraction and tension of an edge that moves steadily.
+
+    Its bonds bear ``phi`` and are in equilibrium; ``p`` holds the local parameters and the
+    curvature, numbers or arrays.
+    """
     evaluate = laws.compiled.evaluate
     values = {**p, "phi": phi, "sigma": 0.0, "n": 0.0}
     values["r"] = evaluate("off_rate", values)
