@@ -30,7 +30,7 @@ LAWS = {
     "stiffness": "#v=2&seed=2&law=stiffness&laws.chi=0.8",
     "catch-slip": "#v=2&seed=2&law=catch-slip&laws.catch=5",
     "load": "#v=2&seed=2&law=load&laws.stall=3000",
-    "swept-myosin": "#v=2&seed=2&law=swept-myosin&laws.sweep=0.5",
+    "swept-myosin": "#v=2&seed=2&law=swept-myosin&laws.sweep=0.2",
 }
 LINK = "#v=1&r_on=26&zeta_1=600&seed=2"
 FRAMES = """new Promise((done) => {

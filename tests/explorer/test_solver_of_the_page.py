@@ -39,7 +39,7 @@ OF_LAWS = {
     "stiffness": "v=2&r_on=26&seed=2&law=stiffness&laws.chi=0.7&changes=1~2,laws.chi:0.9",
     "catch-slip": "v=2&r_on=26&zeta_1=600&seed=2&law=catch-slip&laws.catch=5&laws.catch_force=0.7",
     "load": "v=2&r_on=26&zeta_1=600&seed=2&law=load&laws.stall=3000&laws.steepness=2.5",
-    "swept-myosin": "v=2&r_on=26&zeta_1=600&seed=2&law=swept-myosin&laws.sweep=0.5",
+    "swept-myosin": "v=2&r_on=26&zeta_1=600&seed=2&law=swept-myosin&laws.sweep=0.2",
 }
 GROUND = (
     "v=2&r_on=26&zeta_1=600&seed=1&islands=0,0,3;1,1,1,2.2;2,0,1,1,3.1&pillars=2.2,0,0.5,0.7"

@@ -53,7 +53,7 @@ _WORDS: Final = {
 _NUMBERS: Final[dict[str, dict[str, Shown]]] = {
     "paper": {},
     "catch-slip": {
-        "catch": Shown("catch path", 5.0, 0.0, 60.0, 0.5),
+        "catch": Shown("catch path", 20.0, 0.0, 60.0, 0.5),
         "catch_force": Shown("its force scale", 0.8, 0.0, 3.0, 0.05),
         "slip": Shown("slip path", 1.0, 0.1, 3.0, 0.05),
         "slip_force": Shown("its force scale", 1.0, 0.5, 2.0, 0.05),
@@ -63,7 +63,7 @@ _NUMBERS: Final[dict[str, dict[str, Shown]]] = {
         "stall": Shown("stall load", 3000.0, 500.0, 10000.0, 50.0),
         "steepness": Shown("steepness", 2.0, 0.5, 16.0, 0.5),
     },
-    "swept-myosin": {"sweep": Shown("sweep", 0.5, 0.0, 1.9, 0.05)},
+    "swept-myosin": {"sweep": Shown("sweep", 0.2, 0.0, 1.9, 0.05)},
 }
 
 
