@@ -236,7 +236,9 @@ def _calls(folder: Path) -> Iterator[Call]:
     yield call(cc.surroundings.Gradient, parameter="r_on", x=1.0, least=0.0)
     yield call(cc.surroundings.TensionGradient, mu=100.0)
     yield call(cc.surroundings.AlongEdge, parameter="v_p", front=0.1, bend=-0.1, slow=0.02)
-    yield call(cc.explore, what=cc.Parameters(r_on=24, zeta_1=540), seed=3, view="bare")
+    yield call(
+        cc.explore, what=cc.Parameters(r_on=24, zeta_1=540), seed=3, view="bare", laws="stiffness"
+    )
     # branches
     ways = cc.branches
     cell = cc.Parameters(r_on=56, zeta_1=560)

@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+import base64
+import io
 import json
 import time
 
+import imageio_ffmpeg
+import numpy as np
 import pytest
+from PIL import Image
 
 import cellcrawl as cc
 from cellcrawl.explorer import links
 from tests.explorer.browser import Browser
 
+STATE = (
+    "JSON.stringify([...page.run.cell.fields.x, ...page.run.cell.fields.bound_fraction, "
+    "page.run.cell.steps])"
+)
 LINK = "#v=1&r_on=26&zeta_1=600&seed=2&paused=true"
 
 
@@ -127,7 +136,10 @@ def test_hands_on_the_cell_and_the_ground_change_the_run(browser, page):
     assert browser.value("[page.run.setup.islands.length, page.run.setup.pillars.length]") == [1, 1]
     assert browser.value("page.run.cell.onGround") is True
     browser.value("page.sync(); document.getElementById('clean').click()")
-    assert browser.value("[page.run.setup.islands.length, page.run.setup.pillars.length]") == [0, 0]
+    assert browser.value("[...page.run.lasting('islands'), ...page.run.lasting('pillars')]") == []
+    assert browser.value("document.getElementById('clean').hidden") is True
+    browser.value("document.getElementById('reset').click()")
+    assert browser.value("[page.run.setup.islands, page.run.setup.pokes]") == [[], []]
     assert browser.errors == []
 
 
@@ -138,16 +150,14 @@ def test_a_link_restores_the_same_bits(browser, page):
     run_to(browser, 6.0)
     browser.value("page.run.poke('push', 0.4, 0.6)")
     run_to(browser, 9.0)
-    fields = "...page.run.cell.fields.x, ...page.run.cell.fields.bound_fraction"
-    state = f"JSON.stringify([{fields}, page.run.cell.steps])"
     browser.value("page.run.sample()")
-    before = browser.value(state)
+    before = browser.value(STATE)
     browser.value("document.querySelector('[data-take=link]').click()")
     link = browser.value("document.getElementById('taken').value")
     opened(browser, page, "#" + link.partition("#")[2] + "&paused=true")
     run_to(browser, 9.0)
     browser.value("page.run.sample()")
-    assert browser.value(state) == before
+    assert browser.value(STATE) == before
 
 
 def test_the_python_lines_make_the_run_of_the_page(browser, page):
@@ -163,16 +173,104 @@ def test_the_python_lines_make_the_run_of_the_page(browser, page):
     assert length == pytest.approx(float(run["length"][-1]), rel=1e-8)
 
 
-def test_pictures_numbers_and_embed_code_can_be_taken(browser, page):
+def test_a_cell_crawls_under_every_law(browser, page):
     opened(browser, page)
+    names = browser.value("[...document.querySelectorAll('#law option')].map((o) => o.value)")
+    assert names == list(cc.laws.SHIPPED)
+    for name in names:
+        browser.value(
+            f"(() => {{ const e = document.getElementById('law'); e.value = {name!r}; "
+            "e.dispatchEvent(new Event('change')); })()"
+        )
+        numbers = browser.value("[...document.querySelectorAll('#law-numbers input')].length")
+        assert numbers == 2 * len(cc.laws.SHIPPED[name].parameters)
+        run_to(browser, 1.0)
+        assert browser.value("[page.run.setup.law, page.run.status]") == [name, "running"]
+    for sweep, words in (("1.99", "no one balance"), ("0", "")):
+        browser.value(
+            "(() => { const e = document.getElementById('laws.sweep-number'); "
+            f"e.value = {sweep!r}; e.dispatchEvent(new Event('change')); }})()"
+        )
+        assert words in browser.value("document.getElementById('notice').textContent")
     run_to(browser, 2.0)
-    browser.value("window.saved = []")
-    browser.value("URL.createObjectURL = (b) => { saved.push([b.type, b.size]); return '#'; }")
-    for what in ("png", "csv"):
-        browser.value(f"document.querySelector('[data-take={what}]').click()")
-    browser.wait("saved.length === 2")
-    kinds = {kind for kind, size in browser.value("saved") if size > 1000}
-    assert kinds == {"image/png", "text/csv"}
+    assert browser.value("page.run.parameters['laws.sweep']") == 0
+    assert browser.errors == []
+
+
+def test_a_law_without_a_resting_circle_says_so_and_offers_the_papers(browser, page):
+    opened(browser, page, "#v=2&law=catch-slip&laws.catch=5&laws.slip=0&paused=true")
+    browser.wait("!document.querySelector('.ended').hidden")
+    assert "no circle is at rest" in browser.value("document.querySelector('.ended p').textContent")
+    browser.value("document.querySelector('[data-do=another]').click()")
+    assert browser.value("[page.run.setup.law, page.run.status]") == ["paper", "running"]
+    assert browser.errors == []
+
+
+def painted(browser: Browser) -> None:
+    """Change, ramp, paint, wipe and poke on the way, under a law."""
+    run_to(browser, 1.0)
+    browser.value("page.run.paint('islands', [0.2, 0.1, 1.4])")
+    run_to(browser, 2.0)
+    browser.value("document.getElementById('over').value = '10'; page.change({r_on: 34})")
+    browser.value("page.run.paint('pillars', [2.5, 0, 0.5])")
+    run_to(browser, 3.0)
+    browser.value("page.run.poke('push', 0.4, 0.6)")
+    browser.value("page.wipe()")
+    run_to(browser, 4.0)
+    browser.value("page.run.paint('islands', [1, 1, 2])")
+
+
+def test_a_link_restores_painted_ground_ramps_and_law_to_the_same_bits(browser, page):
+    for law in ("", "&law=stiffness&laws.chi=0.8"):
+        opened(browser, page, f"#v=2&r_on=26&zeta_1=600&seed=2{law}&paused=true")
+        painted(browser)
+        run_to(browser, 9.0)
+        browser.value("page.run.sample()")
+        before = browser.value(STATE)
+        browser.value("document.querySelector('[data-take=link]').click()")
+        link = browser.value("document.getElementById('taken').value")
+        opened(browser, page, "#" + link.partition("#")[2] + "&paused=true")
+        assert browser.value("document.getElementById('notice').hidden")
+        run_to(browser, 9.0)
+        browser.value("page.run.sample()")
+        assert browser.value(STATE) == before
+    assert browser.errors == []
+
+
+def test_the_python_lines_tell_law_ground_and_pokes(browser, page):
+    opened(browser, page, "#v=2&law=stiffness&laws.chi=0.8&seed=2&paused=true")
+    painted(browser)
+    run_to(browser, 5.0)
+    browser.value("document.querySelector('[data-take=python]').click()")
+    lines = browser.value("document.getElementById('taken').value")
+    scope: dict = {}
+    exec(lines.partition("run = ")[0], scope)
+    browser.value("document.querySelector('[data-take=link]').click()")
+    asked = links.read(browser.value("document.getElementById('taken').value"))
+    assert scope["p"] == asked.parameters
+    assert scope["options"] == {
+        name: value
+        for name, value in asked.options().items()
+        if name in scope["options"] or value not in (None, 1e-4)
+    }
+
+
+@pytest.mark.slow
+def test_the_run_of_the_python_lines_is_that_of_the_page_with_painted_ground(browser, page):
+    opened(browser, page, "#v=2&seed=2&paused=true")
+    painted(browser)
+    run_to(browser, 6.0)
+    seen = browser.value("page.run.sample()")
+    browser.value("document.querySelector('[data-take=python]').click()")
+    lines = browser.value("document.getElementById('taken').value")
+    scope: dict = {}
+    exec(lines.partition("print(")[0], scope)
+    for name in ("length", "tension", "area"):
+        assert seen[name] == float(scope["run"][name][-1])
+
+
+def test_there_is_embed_code_of_three_levels(browser, page):
+    opened(browser, page)
     for level in ("full", "small", "bare"):
         browser.value(f"document.getElementById('level').value = {level!r}")
         browser.value("document.querySelector('[data-take=embed]').click()")
@@ -210,17 +308,39 @@ def test_a_torn_cell_says_so_and_offers_another(browser, page):
     assert browser.value("[page.run.setup.seed, page.run.status]") == [8, "running"]
 
 
-def test_a_browser_without_webassembly_gets_words(browser, page):
+@pytest.mark.parametrize(
+    ("script", "words"),
+    [
+        ("delete globalThis.WebAssembly;", "no WebAssembly"),
+        ("WebAssembly.validate = () => false;", "no SIMD part"),
+        ("delete globalThis.DecompressionStream;", "cannot unpack"),
+    ],
+)
+def test_a_browser_that_cannot_run_the_solver_gets_words_and_a_picture(
+    browser, page, script, words
+):
     browser.errors.clear()
-    script = browser.send(
-        "Page.addScriptToEvaluateOnNewDocument", source="delete globalThis.WebAssembly;"
-    )
+    added = browser.send("Page.addScriptToEvaluateOnNewDocument", source=script)
     browser.send("Page.navigate", url="about:blank")
-    browser.open(page.as_uri())
+    browser.open(page.as_uri() + LINK)
     browser.wait("!document.getElementById('notice').hidden")
-    assert "WebAssembly" in browser.value("document.getElementById('notice').textContent")
-    browser.send("Page.removeScriptToEvaluateOnNewDocument", identifier=script["identifier"])
+    browser.send("Page.removeScriptToEvaluateOnNewDocument", identifier=added["identifier"])
+    assert words in browser.value("document.getElementById('notice').textContent")
+    colours = browser.value(
+        "(() => { const c = document.querySelector('canvas.cell'); const d = c.getContext('2d')"
+        ".getImageData(0, 0, c.width, c.height).data; const found = new Set(); "
+        "for (let k = 0; k < d.length; k += 4) found.add(d[k] + 256 * d[k + 1]); "
+        "return found.size; })()"
+    )
+    assert colours > 10
     assert browser.errors == []
+
+
+def test_a_browser_older_than_modules_gets_words(browser, page):
+    opened(browser, page)
+    browser.value("eval(document.querySelector('script[nomodule]').textContent), 0")
+    assert "older" in browser.value("document.getElementById('notice').textContent")
+    assert browser.value("document.getElementById('notice').hidden") is False
 
 
 @pytest.mark.parametrize("width", [360, 390, 820, 1400, 1920])
@@ -239,9 +359,33 @@ def test_two_embeds_on_one_page_are_independent(browser, page, tmp_path):
     (tmp_path / "two.html").write_text("<!doctype html>" + "".join(frames))
     browser.errors.clear()
     browser.open(tmp_path / "two.html")
-    time.sleep(1.0)
     tree = browser.send("Page.getFrameTree")["frameTree"]["childFrames"]
-    assert len(tree) == 2
+    worlds = [
+        browser.send("Page.createIsolatedWorld", frameId=part["frame"]["id"])["executionContextId"]
+        for part in tree
+    ]
+
+    def within(world: int, expression: str) -> object:
+        found = browser.send(
+            "Runtime.evaluate", expression=expression, contextId=world, returnByValue=True
+        )
+        return found["result"].get("value")
+
+    def clocks() -> list[float]:
+        told = [within(world, "document.querySelector('.clock').textContent") for world in worlds]
+        return [float(str(text).removeprefix("t = ") or 0.0) for text in told]
+
+    def until(condition: object) -> None:
+        end = time.monotonic() + 20.0
+        while not condition():  # type: ignore[operator]
+            assert time.monotonic() < end, clocks()
+            time.sleep(0.05)
+
+    until(lambda: min(clocks()) > 0.5)
+    within(worlds[0], "document.getElementById('play').click()")
+    held, before = clocks()
+    until(lambda: clocks()[1] > before + 0.5)
+    assert clocks()[0] - held < 0.2
     assert browser.errors == []
 
 
@@ -255,3 +399,127 @@ def test_the_page_waits_while_it_is_out_of_view(browser, page):
     assert browser.value("page.run.now") == held
     browser.value("window.scrollTo(0, 0)")
     browser.wait(f"page.run.now > {held}")
+
+
+def test_a_tab_left_for_a_night_goes_on_where_it_was(browser, page):
+    opened(browser, page, "#v=1&seed=2")
+    browser.wait("page.run.now > 0.2")
+    hide = (
+        "Object.defineProperty(document, 'hidden', { value: %s, configurable: true }); "
+        "document.dispatchEvent(new Event('visibilitychange')), page.run.now"
+    )
+    held = browser.value(hide % "true")
+    time.sleep(0.2)
+    assert browser.value("page.run.now") == held
+    browser.value("page.last -= 9 * 3600 * 1000, 0")  # the clock has gone on
+    assert browser.value(hide % "false") == held
+    browser.wait(f"page.run.now > {held}")
+    assert browser.value("page.run.now") < held + 5.0
+    browser.value("page.last -= 9 * 3600 * 1000, 0")  # and without a word of it
+    browser.wait("page.frames > 3")
+    assert browser.value("page.run.now") < held + 10.0
+    assert browser.errors == []
+
+
+def test_a_slider_at_its_end_runs_or_says_why_not(browser, page):
+    opened(browser, page)
+    sliders = browser.value(
+        "[...document.querySelectorAll('#controls [type=range]')].map(s => s.id)"
+    )
+    assert len(sliders) >= 8
+    for slider in sliders:
+        for end in ("min", "max"):
+            browser.value(
+                f"page.open({LINK!r}), page.playing = false; (() => {{ "
+                f"const s = document.getElementById({slider!r}); s.value = s.{end}; "
+                "s.dispatchEvent(new Event('input')); })(); page.run.advance(1.5); "
+                "page.tell(page.place)"
+            )
+            assert browser.value(f"page.run.parameters[{slider!r}]") == browser.value(
+                f"Number(document.getElementById({slider!r}).{end})"
+            )
+            status = browser.value("page.run.status")
+            words = browser.value("document.querySelector('.ended p').textContent")
+            assert status == "running" or len(words) > 40, (slider, end, status)
+    assert browser.errors == []
+
+
+def taken(browser: Browser, what: str, until: str = "true") -> tuple[str, bytes]:
+    """Press a button of "Take it home" and return the kind and the bytes of the file it gives."""
+    browser.value(
+        "window.kept = null; URL.createObjectURL = (blob) => { window.kept = blob; return '#'; }; "
+        "HTMLAnchorElement.prototype.click = () => {}; "
+        f"document.querySelector('[data-take={what}]').click()"
+    )
+    browser.wait(until)
+    if what == "clip":
+        browser.value("document.querySelector('[data-take=clip]').click()")
+    browser.wait("window.kept")
+    text = browser.value(
+        "new Promise((done) => { const reader = new FileReader(); "
+        "reader.onload = () => done(reader.result); reader.readAsDataURL(window.kept); })"
+    )
+    return browser.value("window.kept.type"), base64.b64decode(text.partition(",")[2])
+
+
+def test_the_outlines_are_those_that_were_seen(browser, page):
+    opened(browser, page)
+    run_to(browser, 3.0)
+    _, made = taken(browser, "csv")
+    head, *rows = made.decode().splitlines()
+    assert head == "time,point,x,y"
+    table = np.array([[float(value) for value in row.split(",")] for row in rows])
+    times = np.unique(table[:, 0])
+    assert times.tolist() == pytest.approx([0.1 * k for k in range(31)])
+    assert len(rows) == times.size * 256
+    last = table[table[:, 0] == 3.0]
+    browser.value("page.run.sample()")
+    assert last[:, 2].tolist() == pytest.approx(
+        browser.value("[...page.run.cell.fields.x]"), abs=1e-4
+    )
+
+
+def test_the_picture_is_what_is_seen(browser, page):
+    opened(browser, page)
+    kind, made = taken(browser, "png")
+    with Image.open(io.BytesIO(made)) as picture:
+        size = browser.value("[page.place.canvas.width, page.place.canvas.height]")
+        assert (kind, [*picture.size]) == ("image/png", size)
+        assert len(picture.convert("RGB").getcolors(1 << 24)) > 50
+
+
+def test_a_clip_has_the_frames_that_were_drawn_and_lasts_as_long(browser, page, tmp_path):
+    opened(browser, page, "#v=1&seed=2")
+    began = time.monotonic()
+    kind, made = taken(browser, "clip", "page.clip.frames >= 40")
+    took = time.monotonic() - began
+    file = tmp_path / ("clip." + kind.partition("/")[2].partition(";")[0])
+    file.write_bytes(made)
+    frames, seconds = imageio_ffmpeg.count_frames_and_secs(str(file))
+    assert frames == pytest.approx(browser.value("page.clip.frames"), abs=4)
+    assert seconds == pytest.approx(took, abs=1.0)
+    told = next(imageio_ffmpeg.read_frames(str(file)))  # what the head of the file says
+    assert told["duration"] == pytest.approx(took, abs=1.0)
+    assert browser.value("document.querySelector('[data-take=clip]').textContent") == "Record clip"
+
+
+def test_a_screen_reader_hears_of_a_new_mode_once(browser, page):
+    opened(browser, page, "#v=1&r_on=16&zeta_1=600&seed=2&paused=true")
+    browser.value(
+        "window.heard = []; new MutationObserver(() => heard.push(document.getElementById("
+        "'announced').textContent)).observe(document.getElementById('announced'), "
+        "{ childList: true, characterData: true, subtree: true })"
+    )
+    for t in range(10, 70, 2):
+        run_to(browser, t)
+        browser.value("page.tell(page.place), new Promise((done) => setTimeout(done))")
+    heard = browser.value("heard")
+    assert "gliding" in heard[-1]
+    assert len(heard) <= 4
+    labels = browser.value(
+        "[...document.querySelectorAll('canvas, input, select, textarea, button')]"
+        ".filter((e) => e.offsetParent && e.getAttribute('aria-hidden') !== 'true' && "
+        "!(e.getAttribute('aria-label') || e.labels?.length || e.textContent.trim()))"
+        ".map((e) => e.outerHTML)"
+    )
+    assert labels == []

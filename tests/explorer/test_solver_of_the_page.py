@@ -33,11 +33,19 @@ LINKS = {
     "rotation": "v=1&r_on=24&zeta_1=540&seed=12345678901",
     "changed": "v=1&r_on=16&zeta_1=600&seed=2&changes=1,r_on:26,D:0.1;3,zeta_1:560",
     "consistent": "v=1&r_on=26&zeta_1=600&seed=3&elasticity=consistent",
+    "ramps": "v=2&r_on=16&seed=2&changes=1~2.5,r_on:26,r_p:52;3,zeta_1:560;3.2~4.7,D:0.1",
+}
+OF_LAWS = {
+    "stiffness": "v=2&r_on=26&seed=2&law=stiffness&laws.chi=0.7&changes=1~2,laws.chi:0.9",
+    "catch-slip": "v=2&r_on=26&zeta_1=600&seed=2&law=catch-slip&laws.catch=5&laws.catch_force=0.7",
+    "load": "v=2&r_on=26&zeta_1=600&seed=2&law=load&laws.stall=3000&laws.steepness=2.5",
+    "swept-myosin": "v=2&r_on=26&zeta_1=600&seed=2&law=swept-myosin&laws.sweep=0.2",
 }
 GROUND = (
-    "v=1&r_on=26&zeta_1=600&seed=1&islands=0,0,3;1,1,1&pillars=2.2,0,0.5"
+    "v=2&r_on=26&zeta_1=600&seed=1&islands=0,0,3;1,1,1,2.2;2,0,1,1,3.1&pillars=2.2,0,0.5,0.7"
     "&pokes=push,2,0.9,0;release,3,0,0.9"
 )
+SOFT_GROUND = GROUND + "&law=stiffness&laws.chi=0.8"
 TIMES = [0.0, 0.5, 2.0, 5.0]
 
 
@@ -54,9 +62,17 @@ def in_node(runs: list[dict], folder: Path, module: Path | None = None) -> list[
     return node.run("link", content(), CODE, {"module": str(place), "runs": runs}, folder)
 
 
+def slow(link: str) -> object:
+    """Kernels for a law or a ground are compiled first, which takes most of a minute."""
+    return pytest.param([link], marks=pytest.mark.slow)
+
+
 @pytest.mark.parametrize(
-    "some", [[*LINKS.values()], pytest.param([GROUND], marks=pytest.mark.slow)], ids=["", "ground"]
-)
+    "some",
+    [[*LINKS.values()], [OF_LAWS["stiffness"]], *map(slow, [*OF_LAWS.values()][1:]), slow(GROUND),
+     slow(SOFT_GROUND)],
+    ids=["paper", *OF_LAWS, "ground", "soft-ground"],
+)  # fmt: skip
 @node.needs_node
 def test_the_module_computes_the_bits_of_python(tmp_path, some):
     found = in_node([{"link": link, "times": TIMES} for link in some], tmp_path)
@@ -71,6 +87,25 @@ def test_the_module_computes_the_bits_of_python(tmp_path, some):
                 assert seen[name] == same(float(known[name])), (link, name)
             for axis in "xy":
                 assert seen[axis] == same(float(known[f"centroid_{axis}"])), (link, axis)
+
+
+def test_the_page_has_every_law_that_is_shipped():
+    assert set(OF_LAWS) | {"paper"} == set(cc.laws.SHIPPED) == set(content()["laws"])
+
+
+@node.needs_node
+def test_the_page_refuses_what_the_package_refuses(tmp_path):
+    asked = [
+        "v=2&law=swept-myosin&laws.sweep=1.99",
+        "v=2&law=catch-slip&laws.catch=5&laws.slip=0",
+    ]
+    found = in_node([{"link": link, "times": [0.0]} for link in asked], tmp_path)
+    for link, got in zip(asked, found, strict=True):
+        linked = links.read(link)
+        with pytest.raises(cc.InputError) as refused:
+            cc.simulate(linked.parameters, t_end=0.1, **linked.options())
+        wanted = "refused" if "sweep" in str(refused.value) else "no_rest"
+        assert got["status"] == wanted, (link, str(refused.value))
 
 
 @node.needs_node
@@ -98,5 +133,7 @@ def test_a_fresh_build_computes_the_same_bits(tmp_path):
     from cellcrawl.explorer.module import build
 
     (tmp_path / "fresh.wasm").write_bytes(build())
-    asked = [{"link": link, "times": TIMES} for link in [*LINKS.values(), GROUND]]
+    asked = [
+        {"link": link, "times": TIMES} for link in [*LINKS.values(), *OF_LAWS.values(), GROUND]
+    ]
     assert in_node(asked, tmp_path) == in_node(asked, tmp_path, tmp_path / "fresh.wasm")

@@ -101,6 +101,30 @@ def test_a_pillar_pushes_as_deep_as_the_edge_is_in_it():
     assert pushed == pytest.approx([0.0, 0.0, 40.0, 100.0])
 
 
+def test_discs_come_and_go_in_their_time():
+    always = Islands([[0.0, 0.0, 1.0]], outside=0.25, edge=0.05)
+    timed = Islands([[0.0, 0.0, 1.0, 2.0, 6.0]], outside=0.25, edge=0.05)
+    pillar = Pillars([[0.0, 0.0, 1.0, 2.0, 6.0]], stiffness=100.0)
+
+    def seen(ground, time, x):
+        place = Place(x=x, y=0.0, time=time, normal_x=1.0, normal_y=0.0)
+        return {name: float(value) for name, value in ground.change(place, Local).items()}
+
+    for x in (0.1, 0.98, 3.0):
+        for time in (0.0, 2.0, 6.5, 9.0):  # whole ground adhesive, no pillar
+            assert seen(timed, time, x)["r_on"] == 26.0
+            assert seen(pillar, time, x)["pressure"] == 0.0
+        for time in (2.5, 4.0, 6.0):
+            assert seen(timed, time, x) == seen(always, time, x)
+    assert seen(pillar, 4.0, 0.1)["pressure"] == pytest.approx(90.0)
+    times = np.linspace(1.9, 2.6, 701)
+    coming = np.array([seen(timed, time, 3.0)["r_on"] for time in times])
+    assert np.all(np.diff(coming) <= 0.0)
+    assert np.abs(np.diff(coming)).max() < 0.1  # without a jump
+    with pytest.raises(cc.InputError, match="4 columns"):
+        Islands([[0.0, 0.0, 1.0, 2.0]])
+
+
 def test_a_pulse_is_nothing_before_and_after_and_at_its_height_what_it_says():
     pulse = LocalPulse(x=1.0, y=0.0, radius=0.5, begin=2.0, duration=1.0, binding=0.25, push=8.0)
     for time, strength in ((1.9, 0.0), (2.0, 0.0), (2.5, 1.0), (3.0, 0.0), (9.0, 0.0)):

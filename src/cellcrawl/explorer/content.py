@@ -12,6 +12,7 @@ from matplotlib.colors import to_hex
 
 from cellcrawl.explorer.cards import CARDS
 from cellcrawl.explorer.entries import layout
+from cellcrawl.explorer.law_choices import law_choices
 from cellcrawl.explorer.links import PULSES
 from cellcrawl.explorer.presets import PRESETS
 from cellcrawl.linear import growth_rates, marginal_curves
@@ -38,6 +39,7 @@ def content() -> dict[str, Any]:
         "scales": {name: getattr(scales, name) for name in scales.field_names()},
         "limits": {name: [about.low, about.high] for name, about in DESCRIPTIONS.items()},
         "layout": layout(),
+        "laws": law_choices(),
         "pulses": PULSES,
         "meanings": {name: about.meaning for name, about in DESCRIPTIONS.items()},
         "map": {**_shading(), "modes": kept["modes"]},

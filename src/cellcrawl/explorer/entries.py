@@ -13,7 +13,10 @@ import numba
 import numpy as np
 from numba.core import types
 
+from cellcrawl._elementary import natural_logarithm
 from cellcrawl.curve.crossing import crossing_edges
+from cellcrawl.laws import SHIPPED, Law
+from cellcrawl.laws.balanced_edge import TRIALS, at_bond_force, force_at_rest, trial_force
 from cellcrawl.laws.law import PAPER
 from cellcrawl.solvers.adaptive import drive
 from cellcrawl.solvers.adaptive.differences import DIFFERENCES
@@ -30,14 +33,14 @@ from cellcrawl.solvers.adaptive.staggered import HALO
 from cellcrawl.solvers.adaptive.waves import resample, slopes
 from cellcrawl.starts.small_waves import random_start
 from cellcrawl.surroundings import Islands, LocalPulse, Pillars, Surroundings
+from cellcrawl.surroundings.lookup import APPEARS
 from cellcrawl.surroundings.motion import BENDS, MOTION, MOVES
 from cellcrawl.surroundings.place import Around as AroundEdge
 
 MOST_DISCS: Final = 200  # of islands, and of pillars
 OUTPUT_ROWS: Final = 8
-ROWS: Final = len(PAPER.rows) + 1
 FEWEST, MOST = NODE_COUNTS[0], NODE_COUNTS[-1]
-REACHED, BROKEN, UNRESOLVED_START = 0, 100, 101
+REACHED, BROKEN, UNRESOLVED_START, RAMPING, NO_REST = 0, 100, 101, 102, 103
 MOVE: Final = 10_000  # and the number of nodes: what `advance` returns where it asks for others
 _STEPS_PER_CALL: Final = 5000
 _TABLE_ROWS, _CONTROLS, _COUNTERS = drive.TABLE_ROWS, drive.CONTROLS, drive.COUNTERS
@@ -53,12 +56,13 @@ _carray: Any = getattr(numba, "carray")  # noqa: B009, which its types lack
 
 GROUND: Final = Surroundings(
     [
-        Islands([[0.0, 0.0, 1e6]] * MOST_DISCS),
-        Pillars([[1e6, 1e6, 1.0]] * MOST_DISCS),
+        Islands([[0.0, 0.0, 1.0]] * MOST_DISCS),
+        Pillars([[0.0, 0.0, 1.0]] * MOST_DISCS),
         LocalPulse(begin=-1e9),
     ]
 )
-"""What can be painted and done on the page; with these numbers it changes nothing."""
+"""What can be painted and done on the page; with no disc and no pulse it changes nothing."""
+LAWS: Final[dict[str, Law]] = {name: kind() for name, kind in SHIPPED.items()}
 
 
 class Entry(NamedTuple):
@@ -71,9 +75,9 @@ class Entry(NamedTuple):
 
 def layout() -> dict[str, Any]:
     """Return sizes and numbers that whoever calls the entries needs."""
-    data = GROUND.compiled(PAPER).data
+    data, discs = _bare_ground()
     return {
-        "rows": list(PAPER.rows),
+        "rows": {name: list(law.rows) for name, law in LAWS.items()},
         "motion": MOTION,
         "halo": HALO,
         "fields": FIELDS,
@@ -101,11 +105,28 @@ def layout() -> dict[str, Any]:
             "unresolved": drive.UNRESOLVED,
             "broken": BROKEN,
             "unresolved_start": UNRESOLVED_START,
+            "ramping": RAMPING,
+            "no_rest": NO_REST,
             "move": MOVE,
         },
-        "ground": data.tolist(),
+        "ground": data,
+        "discs": discs,
+        "appears": APPEARS,
         "most_discs": MOST_DISCS,
     }
+
+
+def _bare_ground() -> tuple[list[float], dict[str, int]]:
+    """Return the numbers of a ground without discs, and where the counts of discs are."""
+    data = GROUND.compiled(PAPER).data.tolist()
+    counts, first = {}, 0
+    for part in GROUND.parts:
+        table = first + len(part.values)
+        if part.table().size:
+            counts[type(part).__name__.lower()] = table + 1
+            data[table + 1] = 0.0
+        first = table + part.table().size
+    return data, counts
 
 
 def start(
@@ -159,17 +180,51 @@ def crossing(count: int, x_at: Any, y_at: Any) -> int:
     return first
 
 
-def _on_the_way(surrounded: bool) -> tuple[Any, Any, Any]:
+def logarithm(x: float, whole_at: Any) -> int:
+    """Put the logarithm that the package takes first in ``whole``."""
+    _carray(whole_at, (16,))[0] = natural_logarithm(x)
+    return REACHED
+
+
+def next_time(control_at: Any, end: float, whole_at: Any) -> int:
+    """Put the time at which the next step ends first in ``whole``."""
+    control = _carray(control_at, (_CONTROLS,))
+    now = control[_TIME]
+    h = drive.bounded_step(control[drive.STEP], now, end)
+    _carray(whole_at, (16,))[0] = end if h == end - now else now + h
+    return REACHED
+
+
+def _at_rest(laws: Law) -> Any:
+    """Return what finds the resting circle of least force on a bond, as `rest_state` does."""
+    law, rows = laws.compiled, len(laws.rows) + 1
+
+    def rest(profile_at: Any, whole_at: Any) -> int:
+        edge, whole = _carray(profile_at, (rows, 1)), _carray(whole_at, (16,))
+        before = np.nan
+        for k in range(TRIALS):
+            speed = at_bond_force(law, trial_force(k), 1.0, edge)[0]
+            if np.isfinite(before) and np.isfinite(speed) and (before > 0.0) != (speed > 0.0):
+                phi = force_at_rest(law, trial_force(k - 1), trial_force(k), 1.0, edge)
+                _, _, whole[0], whole[1] = at_bond_force(law, phi, 1.0, edge)
+                return REACHED
+            before = speed
+        return NO_REST
+
+    return rest
+
+
+def _on_the_way(laws: Law, surrounded: bool) -> tuple[Any, Any, Any]:
     """Return `advance`, `move` and `frame` for a cell that is alone, or has a ground."""
-    law = PAPER.compiled
-    ground = GROUND.compiled(PAPER)
+    law, rows = laws.compiled, len(laws.rows) + 1
+    ground = GROUND.compiled(laws)
     entries = ground.data.size
 
     if surrounded:
 
         def still(local_at: Any, nodes: int) -> Any:
             """The motion, of which no ground here asks: beside the local parameters."""
-            motion = _carray(local_at, (ROWS * nodes + MOTION,))[ROWS * nodes :]
+            motion = _carray(local_at, (rows * nodes + MOTION,))[rows * nodes :]
             motion[BENDS] = motion[MOVES] = 0.0
             return motion
 
@@ -177,14 +232,14 @@ def _on_the_way(surrounded: bool) -> tuple[Any, Any, Any]:
 
         def around(data_at: Any, local_at: Any, room_at: Any, nodes: int) -> Any:
             data = _carray(data_at, (entries,))
-            local, before = _carray(local_at, (ROWS, nodes)), _carray(local_at, (ROWS, 0))
+            local, before = _carray(local_at, (rows, nodes)), _carray(local_at, (rows, 0))
             motion = still(local_at, nodes)
             room = _carray(room_at, (TRACE_ROWS, nodes + 2 * HALO))
             return Around(ground, data, local, before, motion, room)
 
         def around_edge(data_at: Any, local_at: Any, count: int) -> Any:
             data = _carray(data_at, (entries,))
-            local, before = _carray(local_at, (ROWS, count)), _carray(local_at, (ROWS, 0))
+            local, before = _carray(local_at, (rows, count)), _carray(local_at, (rows, 0))
             return AroundEdge(ground, data, local, before, still(local_at, count))
 
     else:
@@ -202,6 +257,7 @@ def _on_the_way(surrounded: bool) -> tuple[Any, Any, Any]:
         nodes: int,
         target: float,
         end: float,
+        ramping: int,
         tolerance: float,
         allowed: float,
         control_at: Any,
@@ -220,8 +276,8 @@ def _on_the_way(surrounded: bool) -> tuple[Any, Any, Any]:
         span = nodes + 2 * HALO
         control, counters = _carray(control_at, (_CONTROLS,)), _carray(counters_at, (_COUNTERS,))
         table = _carray(table_at, (_TABLE_ROWS, FIELDS * span + SCALARS))
-        y, profile = _carray(y_at, (nodes,)), _carray(profile_at, (ROWS, 1))
-        edge, mesh = _carray(edge_at, (ROWS, nodes)), _carray(mesh_at, (MESH_ROWS, span))
+        y, profile = _carray(y_at, (nodes,)), _carray(profile_at, (rows, 1))
+        edge, mesh = _carray(edge_at, (rows, nodes)), _carray(mesh_at, (MESH_ROWS, span))
         matrix, work = _carray(matrix_at, (MATRIX_ROWS, nodes)), _carray(work_at, (WORK_ROWS, span))
         place = around(data_at, local_at, room_at, nodes)
         while control[_TIME] < target or counters[_RESTARTING] != 0:
@@ -249,7 +305,7 @@ def _on_the_way(surrounded: bool) -> tuple[Any, Any, Any]:
                 y,
                 profile,
                 edge,
-                False,
+                ramping != 0,
                 mesh,
                 matrix,
                 work,
@@ -261,6 +317,8 @@ def _on_the_way(surrounded: bool) -> tuple[Any, Any, Any]:
                 wanted = wanted_nodes(allowed, FEWEST, MOST, control, counters, table, nodes)
                 if wanted != nodes:
                     return MOVE + wanted
+            elif code == _RETRY and ramping != 0:
+                return RAMPING
             elif code not in (REACHED, _PAUSED, _RETRY):
                 return code
         return REACHED
@@ -293,8 +351,8 @@ def _on_the_way(surrounded: bool) -> tuple[Any, Any, Any]:
             _carray(old_y_at, (old,)),
             _carray(table_at, (_TABLE_ROWS, FIELDS * span + SCALARS)),
             _carray(y_at, (nodes,)),
-            _carray(profile_at, (ROWS, 1)),
-            _carray(edge_at, (ROWS, nodes)),
+            _carray(profile_at, (rows, 1)),
+            _carray(edge_at, (rows, nodes)),
             _carray(mesh_at, (MESH_ROWS, span)),
             _carray(matrix_at, (MATRIX_ROWS, nodes)),
             _carray(work_at, (WORK_ROWS, span)),
@@ -332,8 +390,8 @@ def _on_the_way(surrounded: bool) -> tuple[Any, Any, Any]:
             state,
             trace,
             _carray(y_at, (nodes,)),
-            _carray(profile_at, (ROWS, 1)),
-            _carray(edge_at, (ROWS + 1, count)),
+            _carray(profile_at, (rows, 1)),
+            _carray(edge_at, (rows + 1, count)),
             _carray(out_at, (OUTPUT_ROWS, count)),
         )
         return REACHED
@@ -342,7 +400,10 @@ def _on_the_way(surrounded: bool) -> tuple[Any, Any, Any]:
 
 
 def entries() -> list[Entry]:
-    """Return all entry points of the module."""
+    """Return all entry points of the module.
+
+    A cell under the paper's law and without a ground, as most are, is spared the ground's work.
+    """
     i32, f64 = types.int32, types.float64
     pointer: Any = types.CPointer
     floats, ints = pointer(f64), pointer(types.int64)
@@ -354,16 +415,23 @@ def entries() -> list[Entry]:
         Entry("start", start, takes(i32, i32, f64, f64, *[floats] * 4)),
         Entry("settle", settle, takes(i32, i32, *[floats] * 4)),
         Entry("crossing", crossing, takes(i32, floats, floats)),
+        Entry("logarithm", logarithm, takes(f64, floats)),
+        Entry("next_time", next_time, takes(floats, f64, floats)),
     ]
-    for name, surrounded in (("", False), ("_on_ground", True)):
-        advance, move, frame = _on_the_way(surrounded)
-        found += [
-            Entry(
-                f"advance{name}",
-                advance,
-                takes(i32, f64, f64, f64, f64, floats, ints, *[floats] * 10),
-            ),
-            Entry(f"move{name}", move, takes(i32, i32, floats, ints, *[floats] * 12)),
-            Entry(f"frame{name}", frame, takes(i32, i32, f64, f64, ints, *[floats] * 10)),
-        ]
+    for kind, law in LAWS.items():
+        named = kind.replace("-", "_")
+        if law != PAPER:
+            found.append(Entry(f"rest_{named}", _at_rest(law), takes(floats, floats)))
+        for surrounded in (False, True) if law == PAPER else (True,):
+            advance, move, frame = _on_the_way(law, surrounded)
+            name = f"{named}_on_ground" if surrounded else named
+            found += [
+                Entry(
+                    f"advance_{name}",
+                    advance,
+                    takes(i32, f64, f64, i32, f64, f64, floats, ints, *[floats] * 10),
+                ),
+                Entry(f"move_{name}", move, takes(i32, i32, floats, ints, *[floats] * 12)),
+                Entry(f"frame_{name}", frame, takes(i32, i32, f64, f64, ints, *[floats] * 10)),
+            ]
     return found

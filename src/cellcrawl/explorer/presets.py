@@ -55,8 +55,10 @@ _WORDS: Final = {
 }
 
 
-def _link(r_on: float, zeta_1: float, *more: str, seed: int = SEED) -> str:
-    return "&".join(["v=1", f"r_on={r_on:.10g}", f"zeta_1={zeta_1:.10g}", f"seed={seed}", *more])
+def _link(r_on: float, zeta_1: float, *more: str, seed: int = SEED, version: int = 1) -> str:
+    return "&".join(
+        [f"v={version}", f"r_on={r_on:.10g}", f"zeta_1={zeta_1:.10g}", f"seed={seed}", *more]
+    )
 
 
 def _jump(first: tuple[float, float], second: tuple[float, float]) -> str:
@@ -138,6 +140,14 @@ OTHERS: Final = (
         _link(26, 600, "islands=0,0,3", "camera=whole"),
         "rotational",
         100.0,
+    ),
+    Preset(
+        "soft",
+        "Onto soft ground",
+        "From t = 40 to 60 the ground goes soft: it does not hold the cell's pull, which stops.",
+        _link(26, 600, "law=stiffness", "laws.chi=1", "changes=40~60,laws.chi:0.5", version=2),
+        "stationary",
+        140.0,
     ),
     Preset(
         "pillars",

@@ -18,6 +18,7 @@ from cellcrawl.data import decode_attribute
 from cellcrawl.data.units import units_of
 from cellcrawl.errors import InputError, StorageError
 from cellcrawl.explorer import bundle, links
+from cellcrawl.laws import PAPER, as_law
 from cellcrawl.modes import FEWEST_RECORDS, classify
 from cellcrawl.observables.inputs import records_with
 from cellcrawl.parameters import Parameters
@@ -81,7 +82,7 @@ class Explorer:
 
 
 @checked
-def explore(what: Any = None, *, seed: int = 2, view: str = "small") -> Explorer:
+def explore(what: Any = None, *, seed: int = 2, view: str = "small", laws: Any = PAPER) -> Explorer:
     """Return the live cell: a page on which this package's solver runs in the browser.
 
     Parameters
@@ -93,6 +94,8 @@ def explore(what: Any = None, *, seed: int = 2, view: str = "small") -> Explorer
         Seed of the random start, 0 or more.
     view : {"small", "full", "bare"}
         How much of the page to show first: the cell with its map, everything, or the cell alone.
+    laws : Law or str
+        The law set of the cell to begin with: one of those shipped.
 
     Returns
     -------
@@ -102,7 +105,7 @@ def explore(what: Any = None, *, seed: int = 2, view: str = "small") -> Explorer
     Raises
     ------
     InputError
-        For anything else, or a run of fewer than two records.
+        For anything else, a run of fewer than two records, or a law set of one's own.
 
     Notes
     -----
@@ -118,10 +121,16 @@ def explore(what: Any = None, *, seed: int = 2, view: str = "small") -> Explorer
     one_of("view", view, VIEWS)
     whole_number("seed", seed, 0, 10**15 - 1)
     about = {**content(), "version": metadata.version("cellcrawl"), "begin": f"view={view}"}
+    law = as_law(laws)
+    if law != PAPER and not (what is None or isinstance(what, Parameters)):
+        raise InputError("explore takes laws with Parameters: a run and a link have theirs")
     if what is None:
         what = Parameters(r_on=26.0, zeta_1=600.0)
     if isinstance(what, Parameters):
-        about["begin"] = links.write(what, seed, view=view)
+        complaint = law.check(what)
+        if complaint is not None:
+            raise InputError(f"{law.name}: {complaint}")
+        about["begin"] = links.write(what, seed, law, view=view)
     elif isinstance(what, str):
         links.read(what)
         about["begin"] = f"{what.rpartition('#')[2]}&view={view}"

@@ -7,7 +7,6 @@ expression has no ``if``: use `where`, `maximum` or `minimum`.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
 from typing import Any, ClassVar, Final
 
@@ -371,8 +370,3 @@ _OUTER: Final[dict[str, Any]] = {
     "cos": lambda a, node: -sin(a),
     "tanh": lambda a, node: 1.0 - node * node,
 }
-
-
-def power(base: Any, exponent: Any) -> Any:
-    """``base ** exponent`` for compiled code: 0 where the base is not positive."""
-    return math.exp(exponent * math.log(base)) if base > 0.0 else 0.0

@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Mapping
 from typing import Any, Final
@@ -22,7 +23,6 @@ from numba.extending import (
 
 from cellcrawl._compile import inlined_kernel
 from cellcrawl._elementary import cosine, hyperbolic_tangent, natural_logarithm, sine
-from cellcrawl.laws import expressions
 from cellcrawl.physics.exponential import exponential, growth
 
 _OPTIONS: Final[Any] = {
@@ -64,7 +64,12 @@ def _choose(condition: bool, if_true: float, if_false: float) -> float:
     return if_true if condition else if_false
 
 
-_power = inlined_kernel(expressions.power)
+@inlined_kernel
+def _power(base: float, exponent: float) -> float:
+    """``base ** exponent``, 0 where the base is not positive."""
+    return exponential(exponent * natural_logarithm(base)) if base > 0.0 else 0.0
+
+
 _IN_KERNELS: Final[dict[str, Any]] = {
     "__name__": "cellcrawl.laws.functions",
     "exp": exponential,
@@ -89,14 +94,21 @@ def register(key: str, source: str, also: Mapping[str, Any] | None = None) -> No
 
 
 def _by_law(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Let kernels call what the law in the first argument has under this function's name."""
+    """Let all call what the law in the first argument has under this function's name.
+
+    Python gets the bits that kernels get.
+    """
     name = function.__name__
+
+    @functools.wraps(function)
+    def in_python(laws: Compiled, *arguments: Any) -> Any:
+        return _registered[laws.key][name](laws, *arguments)
 
     def chosen(laws: Any, *arguments: Any) -> Any:
         return _registered[laws.name][name] if isinstance(laws, LawType) else None
 
-    overload(function, jit_options=_OPTIONS, strict=False)(chosen)
-    return function
+    overload(in_python, jit_options=_OPTIONS, strict=False)(chosen)
+    return in_python
 
 
 @_by_law

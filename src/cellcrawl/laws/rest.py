@@ -9,11 +9,11 @@ import numpy as np
 
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
+from cellcrawl.laws.balanced_edge import TRIALS, at_bond_force, force_at_rest, trial_force
 from cellcrawl.laws.law import LOCAL, PAPER, Law
 from cellcrawl.parameters.dimensionless import Parameters
 
-_FORCES: Final = np.concatenate([np.linspace(1e-6, 1.0, 400), np.linspace(1.0, 40.0, 2000)[1:]])
-_HALVINGS = 200
+_FORCES: Final = np.array([trial_force(k) for k in range(TRIALS)])
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,9 @@ def rest_states(
         speed = np.broadcast_to(edge_bearing(laws, p, _FORCES)[0], _FORCES.shape)
     out, finite = speed > 0.0, np.isfinite(speed)
     changes = np.flatnonzero((out[:-1] != out[1:]) & finite[:-1] & finite[1:])
-    return [_between(laws, p, _FORCES[k], _FORCES[k + 1]) for k in changes]
+    edge = np.array([[p[name]] for name in laws.rows])
+    with np.errstate(all="ignore"):
+        return [_between(laws, k, curvature, edge) for k in changes.tolist()]
 
 
 @checked
@@ -130,15 +132,9 @@ def zero_in(laws: Law, what: str, values: dict[str, Any], name: str, guess: floa
     return x
 
 
-def _between(laws: Law, p: dict[str, Any], low: float, high: float) -> RestState:
-    outward = edge_bearing(laws, p, low)[0] > 0.0
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            break
-        if (edge_bearing(laws, p, middle)[0] > 0.0) == outward:
-            low = middle
-        else:
-            high = middle
-    _, r, n, sigma = edge_bearing(laws, p, low)
-    return RestState(float(low), float(r), float(n), float(sigma))
+def _between(laws: Law, k: int, curvature: float, edge: np.ndarray) -> RestState:
+    """Return the rest between two trial forces, in the bits of a kernel."""
+    kernels = laws.compiled
+    phi = force_at_rest(kernels, trial_force(k), trial_force(k + 1), curvature, edge)
+    _, r, n, sigma = at_bond_force(kernels, phi, curvature, edge)
+    return RestState(float(phi), float(r), float(n), float(sigma))

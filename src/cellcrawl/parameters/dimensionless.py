@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
@@ -90,7 +89,7 @@ class Parameters(NamedFields):
     @property
     def v_p(self) -> float:
         """Polymerization velocity ``r_p log r_p``, in units of v_beta."""
-        return self.r_p * math.log(self.r_p)
+        return self.r_p * _logarithm(self.r_p)
 
     @property
     def n_bar(self) -> float:
@@ -100,7 +99,7 @@ class Parameters(NamedFields):
     @property
     def sigma_bar(self) -> float:
         """Membrane tension of the resting circle of radius 1."""
-        log_r = math.log(self.r_p)
+        log_r = _logarithm(self.r_p)
         pull = self.r_p * log_r + self.zeta_1 * self.n_bar * log_r - self.sigma_c
         return pull / (1.0 + self.h)
 
@@ -108,3 +107,10 @@ class Parameters(NamedFields):
     def tension_rate(self) -> float:
         """``G`` of the tension law ``d sigma / dt = G dA / dt``, for this `elasticity`."""
         return self.k_sigma if self.elasticity == "printed" else self.k_sigma / self.epsilon
+
+
+def _logarithm(x: float) -> float:
+    """Natural logarithm, the same bits on every machine."""
+    from cellcrawl._elementary import natural_logarithm  # brings Numba
+
+    return natural_logarithm(x)

@@ -13,11 +13,18 @@ from cellcrawl.errors import InputError
 from cellcrawl.laws.expressions import Expression, body, call, number, symbol, symbols_of
 from cellcrawl.laws.functions import Compiled, register
 from cellcrawl.laws.law import Described, Law
-from cellcrawl.surroundings.lookup import angle_from_front, disc_depth, image_value, polygon_depth
+from cellcrawl.surroundings.lookup import (
+    angle_from_front,
+    disc_depth,
+    disc_presence,
+    image_value,
+    polygon_depth,
+)
 from cellcrawl.validation import shown
 
 _LOOKUPS: Final[dict[str, Any]] = {
     "disc_depth": disc_depth,
+    "disc_presence": disc_presence,
     "image_value": image_value,
     "polygon_depth": polygon_depth,
     "angle_from_front": angle_from_front,
@@ -82,10 +89,10 @@ class Surrounding(Described):
         """Return numbers that `change` looks up by `look_up`: an image, the corners of a wall."""
         return np.empty(0)
 
-    def look_up(self, function: str, at: Place) -> Any:
+    def look_up(self, function: str, at: Place, *more: Any) -> Any:
         """Return what a function of `cellcrawl.surroundings.lookup` makes of the table there."""
         looked_up = np.vectorize(_LOOKUPS[function], excluded=(0, 1), otypes=[float])
-        return looked_up(self.table(), 0.0, at.x, at.y)
+        return looked_up(self.table(), 0.0, at.x, at.y, *more)
 
 
 class CompiledSurroundings(Compiled):
@@ -176,8 +183,8 @@ def _symbolic(part: Surrounding, first: int, table: int) -> Surrounding:
     made.__dict__.update(part.__dict__)
     made.values = {name: symbol(f"data.{first + k}") for k, name in enumerate(part.values)}  # type: ignore[misc]
 
-    def look_up(function: str, at: Place) -> Expression:
-        return call(function, symbol("data"), number(table), at.x, at.y)
+    def look_up(function: str, at: Place, *more: Any) -> Expression:
+        return call(function, symbol("data"), number(table), at.x, at.y, *more)
 
     made.look_up = look_up  # type: ignore[method-assign]
     return made

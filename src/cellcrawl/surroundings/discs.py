@@ -15,13 +15,19 @@ from cellcrawl.surroundings.base import Place, Surrounding
 from cellcrawl.validation import real_array
 
 _MOST: Final = 1000
+_ALWAYS: Final = (-1e12, 1e12)  # begin and end of a disc that has none
+_WHOLE: Final = 8.0  # distances over which a ground changes, from which on it has
 
 
 class _Discs(Surrounding):
     """Discs in the plane; where they overlap they are one."""
 
     def __init__(self, discs: Any, **values: float) -> None:
-        made = real_array("discs", discs, (None, 3))
+        made = real_array("discs", discs, (None, None))
+        if made.shape[1] not in (3, 5):
+            raise InputError(
+                f"discs has {made.shape[1]} columns: x, y, radius, or these and begin and end"
+            )
         if not 1 <= len(made) <= _MOST:
             raise InputError(f"there are {len(made)} discs: from 1 to {_MOST} can be given")
         if made[:, 2].min() <= 0.0:
@@ -29,8 +35,14 @@ class _Discs(Surrounding):
         super().__init__(**values)
         self.discs = made
 
+    def grows_from(self) -> float:
+        """Return how far below 0 the radius of a disc that comes begins."""
+        return 0.0
+
     def table(self) -> np.ndarray:
-        return np.concatenate([[len(self.discs)], self.discs.ravel()])
+        times = self.discs[:, 3:] if self.discs.shape[1] == 5 else [_ALWAYS] * len(self.discs)
+        rows = np.column_stack([self.discs[:, :3], times])
+        return np.concatenate([[self.grows_from(), len(rows)], rows.ravel()])
 
     def describe(self) -> dict[str, Any]:
         found = super().describe()
@@ -41,23 +53,31 @@ class _Discs(Surrounding):
 class Islands(_Discs):
     """Discs of adhesive ground: elsewhere the on-rate is ``outside`` times as large.
 
+    Before the first disc and after the last the whole ground is adhesive.
+
     Parameters
     ----------
-    discs : array, shape (discs, 3)
-        Middle and radius of each, in cell radii.
+    discs : array, shape (discs, 3) or (discs, 5)
+        Middle and radius of each, in cell radii; and the times at which it begins to be there and
+        to go, each of which takes 0.5.
 
     Raises
     ------
     InputError
-        For no disc, more than 1000, or a radius that is not above 0.
+        For no disc, more than 1000, rows of another length, or a radius that is not above 0.
     """
 
     outside = Parameter(0.5, 0.0, 10.0, "on-rate elsewhere over that on the discs")
     edge = Parameter(0.5, 1e-3, 10.0, "distance over which the ground changes, in cell radii")
 
     def change(self, at: Place, p: Any) -> Mapping[str, Any]:
-        on = 0.5 * (1.0 + tanh(self.look_up("disc_depth", at) / self.edge))
-        return {"r_on": p.r_on * (self.outside + (1.0 - self.outside) * on)}
+        there = self.look_up("disc_presence", at, at.time)
+        off = self.outside + (1.0 - self.outside) * (1.0 - there)
+        on = 0.5 * (1.0 + tanh(self.look_up("disc_depth", at, at.time) / self.edge))
+        return {"r_on": p.r_on * (off + (1.0 - off) * on)}
+
+    def grows_from(self) -> float:
+        return _WHOLE * self.values["edge"]
 
 
 @checked
@@ -66,19 +86,20 @@ class Pillars(_Discs):
 
     Parameters
     ----------
-    discs : array, shape (discs, 3)
-        Middle and radius of each, in cell radii.
+    discs : array, shape (discs, 3) or (discs, 5)
+        Middle and radius of each, in cell radii; and the times at which it begins to be there and
+        to go, each of which takes 0.5.
 
     Raises
     ------
     InputError
-        For no disc, more than 1000, or a radius that is not above 0.
+        For no disc, more than 1000, rows of another length, or a radius that is not above 0.
     """
 
     stiffness = Parameter(1e4, 0.0, 1e7, "pressure over how deep the edge is in a pillar")
 
     def change(self, at: Place, p: Any) -> Mapping[str, Any]:
-        depth = maximum(self.look_up("disc_depth", at), 0.0)
+        depth = maximum(self.look_up("disc_depth", at, at.time), 0.0)
         return {"pressure": p.pressure + self.stiffness * depth}
 
 

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 import numpy as np
 
 from cellcrawl._compile import inlined_kernel, kernel
+
+APPEARS: Final = 0.5  # time over which a disc comes or goes
 
 
 @kernel
@@ -72,19 +75,49 @@ def angle_from_front(velocity_x: float, velocity_y: float, arm_x: float, arm_y: 
     return math.atan2(velocity_x * arm_y - velocity_y * arm_x, ahead)
 
 
+@inlined_kernel
+def _swell(u: float) -> float:
+    """From 0 at 0 to 1 at 1, smoothly."""
+    u = min(max(u, 0.0), 1.0)
+    return u * u * (3.0 - 2.0 * u)
+
+
+@inlined_kernel
+def _part_there(time: float, begin: float, end: float) -> float:
+    """How much of a disc is there: it comes and goes within `APPEARS`."""
+    return _swell((time - begin) / APPEARS) * (1.0 - _swell((time - end) / APPEARS))
+
+
 @kernel
-def disc_depth(data: np.ndarray, table: float, x: float, y: float) -> float:
+def disc_depth(data: np.ndarray, table: float, x: float, y: float, time: float) -> float:
     """How deep a place is inside the nearest of some discs: distance to its rim, below 0 outside.
 
-    The table holds the number of discs, and x, y and radius of each in turn.
+    The table holds from where below 0 radii grow, the number of discs, and x, y, radius, begin and
+    end of each in turn. Minus infinity while there is none.
     """
     k = int(table)
     depth = -math.inf
-    for disc in range(int(data[k])):
-        dx, dy = x - data[k + 1 + 3 * disc], y - data[k + 2 + 3 * disc]
-        radius = data[k + 3 + 3 * disc]
+    for disc in range(int(data[k + 1])):
+        at = k + 2 + 5 * disc
+        there = _part_there(time, data[at + 3], data[at + 4])
+        radius = data[at + 2] - (1.0 - there) * (data[at + 2] + data[k])
         reach = radius - depth
-        square = dx * dx + dy * dy
-        if square < reach * reach:
-            depth = radius - math.sqrt(square)
+        if there > 0.0 and reach > 0.0:
+            dx, dy = x - data[at], y - data[at + 1]
+            square = dx * dx + dy * dy
+            if square < reach * reach:
+                depth = radius - math.sqrt(square)
     return depth
+
+
+@kernel
+def disc_presence(data: np.ndarray, table: float, x: float, y: float, time: float) -> float:
+    """How much of any disc is there, 0 to 1; the table as for `disc_depth`."""
+    k = int(table)
+    absent = 1.0
+    for disc in range(int(data[k + 1])):
+        at = k + 2 + 5 * disc
+        absent *= 1.0 - _part_there(time, data[at + 3], data[at + 4])
+        if absent == 0.0:
+            break
+    return 1.0 - absent

@@ -2,14 +2,15 @@
 
 import { DATA } from "./data.js";
 import { LIMITS } from "./limits.js";
-import { EVERY, PARAMETERS, Run, STATUS } from "./run.js";
+import { EVERY, PARAMETERS, Run, STATUS, complaint, usual } from "./run.js";
 import { MODE_COLOURS, MODE_MARKERS } from "./colours.js";
 import { Stage, colourBar } from "./stage.js";
 import { PhaseMap } from "./map.js";
 import { Kymograph, line } from "./strips.js";
 import { Recording } from "./recording.js";
 import { read, write } from "./link.js";
-import { clip, csv, embed, png, python, save } from "./take.js";
+import { csv, embed, png, python, save } from "./take.js";
+import { clip, drawn } from "./clip.js";
 import { thumbnail } from "./thumbnails.js";
 import { loadModule } from "./load.js";
 import { clock, digits, isPhysical, shown, usePhysical } from "./units.js";
@@ -17,6 +18,7 @@ import { clock, digits, isPhysical, shown, usePhysical } from "./units.js";
 const $ = (id) => document.getElementById(id);
 const all = (selector) => [...document.querySelectorAll(selector)];
 const BUDGET = 11; // ms a frame that the solver may take
+const LAWLESS = ["no_rest", "refused"]; // another seed would not help
 const WORDS = { gliding: "gliding", rotational: "rotational", zigzag: "zigzag", other: "other", stationary: "at rest", fragmented: "torn", "": "…" };
 
 export function symbol(mode, title = "") {
@@ -63,8 +65,10 @@ class Page {
   load(setup, to = 0) {
     const { place } = this;
     place.run = DATA.run && !this.left ? new Recording() : new Run(this.module, setup);
-    place.told = undefined;
+    place.told = place.news = undefined;
     place.element.querySelector(".ended").hidden = true;
+    const { law } = place.run.setup;
+    place.element.querySelector(".law").textContent = law === "paper" ? "" : `law: ${DATA.laws[law].title}`;
     place.stage.center = null;
     place.named = 0;
     this.catchUp = to;
@@ -99,6 +103,7 @@ class Page {
       const text = clock(place.run.now);
       if (place.clockText !== text) place.element.querySelector(".clock").textContent = place.clockText = text;
     }
+    drawn();
     if (this.fresh || this.mapDirty) {
       this.drawMap();
       colourBar($("bar"), this.view.field);
@@ -132,24 +137,35 @@ class Page {
     place.told = run.status;
     element.querySelector(".ended").hidden = !ended;
     if (ended) element.querySelector(".ended p").textContent = `${STATUS[run.status]} (${clock(run.now)})`;
+    element.querySelector(".ended button").textContent = LAWLESS.includes(run.status) ? "Back to the paper's law" : "Try another seed";
     const words = `${WORDS[mode.mode] || "too early to name"}${mode.words ? `: ${mode.words}` : ""}`;
     place.canvas.setAttribute("aria-label", `The cell at ${clock(run.now)}: ${words}; tension ${shown(run.recent.tension[(run.count - 1) % run.recent.tension.length], "tension")}`);
     if (place !== this.place) return;
     const text = mode.mode && mode.words ? `${mode.words[0].toUpperCase()}${mode.words.slice(1)}.` : ended ? "" : "The round cell has no front yet: it takes a while to break its symmetry.";
     if ($("said").textContent !== text) $("said").textContent = text;
+    const news = `${mode.mode}${run.status}`; // a screen reader is told once, not with every number
+    if (place.news !== news) $("announced").textContent = `At ${clock(run.now)}: ${ended ? STATUS[run.status] : words}`;
+    place.news = news;
   }
 
   change(values) {
     if (this.run.recorded) return this.notice("This is a saved run, played back. Choose a cell below or press “Another” to compute one.");
     if (this.run.status !== "running") return;
-    this.run.change(values);
+    const refused = complaint(this.run.setup.law, { ...this.run.latest, ...values });
+    if (refused) this.notice(refused);
+    else {
+      if (this.refused) this.notice("");
+      this.run.change(values, Number($("over").value));
+    }
+    this.refused = Boolean(refused);
     this.sync();
   }
 
   // Bring all controls to what the active run is.
   sync() {
     const latest = this.run.latest;
-    for (const name of Object.keys(PARAMETERS)) {
+    this.lawNumbers();
+    for (const name of [...Object.keys(PARAMETERS), ...Object.keys(usual(this.run.setup.law))]) {
       const slider = $(name), number = $(`${name}-number`);
       if (slider) slider.value = name === "elasticity" ? latest[name] : latest[name];
       if (number && document.activeElement !== number) number.value = Number(latest[name].toPrecision(6));
@@ -165,7 +181,7 @@ class Page {
     $("map").setAttribute("aria-label", `Map of binding rate and adhesive friction. The cell is at binding rate ${digits(latest.r_on)}, adhesive friction ${digits(latest.zeta_1)}. Arrow keys move it.`);
     const key = this.run.preset;
     all("#shelf button").forEach((button) => button.setAttribute("aria-current", String(button.dataset.key === key)));
-    $("clean").hidden = !(this.run.setup.islands?.length || this.run.setup.pillars?.length);
+    $("clean").hidden = !["islands", "pillars"].some((kind) => this.run.lasting(kind).length);
     $("open").href = `${location.href.split("#")[0]}${write(this.run.setup, { ...this.view, view: "full", to: 0 })}`;
     this.mapDirty = true;
   }
@@ -180,28 +196,29 @@ class Page {
     $("notice").hidden = !text;
   }
 
-  again(setup = this.run.setup) {
+  // A fresh cell under what holds now, but for some changes.
+  again(changes = {}) {
     this.notice("");
-    const { islands, pillars } = this.run.setup;
-    this.load({ islands, pillars, ...setup, events: setup.events ?? [] });
+    const { run } = this, { law, seed, rtol } = run.setup;
+    this.load({ law, seed, rtol, parameters: run.latest, islands: run.lasting("islands"), pillars: run.lasting("pillars"), ...changes });
   }
 
   listen() {
     $("play").onclick = () => { this.playing = !this.playing; this.sync(); };
     $("step").onclick = () => { this.playing = false; for (const place of this.shownPlaces) { place.run.advance(place.run.now + 1); this.tell(place); } this.sync(); };
-    $("reset").onclick = () => { const kept = this.active; this.shownPlaces.forEach((place) => { this.active = this.places.indexOf(place); this.again({ ...place.run.setup, parameters: place.run.latest, events: [] }); }); this.active = kept; this.sync(); };
+    $("reset").onclick = () => { const kept = this.active; this.shownPlaces.forEach((place) => { this.active = this.places.indexOf(place); this.again(); }); this.active = kept; this.sync(); };
     $("speed").oninput = (event) => { this.view.speed = 10 ** Number(event.target.value); this.showSpeed(); };
     $("field").onchange = (event) => { this.view.field = event.target.value; this.mapDirty = true; };
     $("camera").onchange = (event) => (this.view.camera = event.target.value);
     $("clean").onclick = () => this.wipe();
     $("units").onchange = (event) => { usePhysical(event.target.checked); this.view.units = event.target.checked ? "si" : "none"; this.fresh = true; this.sync(); this.shownPlaces.forEach((place) => this.tell(place)); };
-    $("dice").onclick = () => (this.left = true) && this.again({ ...this.run.setup, parameters: this.run.latest, seed: this.run.setup.seed + 1, events: [] });
+    $("dice").onclick = () => (this.left = true) && this.again({ seed: this.run.setup.seed + 1 });
     $("seed").onchange = (event) => {
       const text = event.target.value;
-      if (/^\d{1,15}$/.test(text)) this.again({ ...this.run.setup, parameters: this.run.latest, seed: Number(text), events: [] });
+      if (/^\d{1,15}$/.test(text)) this.again({ seed: Number(text) });
       else { this.notice("A seed is a whole number of up to 15 digits."); this.sync(); }
     };
-    all("[data-do=another]").forEach((button) => (button.onclick = () => { this.active = this.places.findIndex((place) => place.element.contains(button)); $("dice").onclick(); }));
+    all("[data-do=another]").forEach((button) => (button.onclick = () => { this.active = this.places.findIndex((place) => place.element.contains(button)); if (LAWLESS.includes(this.run.status)) this.underLaw("paper"); else $("dice").onclick(); }));
     $("pair").onchange = (event) => this.pair(event.target.checked);
     this.legend();
     this.parameters();
@@ -211,7 +228,7 @@ class Page {
     if ("IntersectionObserver" in window) new IntersectionObserver((entries) => { this.inSight = entries.at(-1).isIntersecting; this.visible = this.inSight && !document.hidden; }, { threshold: 0.05 }).observe(document.querySelector(".stage"));
     document.addEventListener("visibilitychange", () => { this.visible = !document.hidden && this.inSight !== false; this.last = performance.now(); });
     window.addEventListener("resize", () => (this.fresh = true));
-    window.addEventListener("hashchange", () => { const given = read(location.hash); this.view = { ...given.view, view: this.view.view }; usePhysical(given.view.units === "si"); this.notice(given.complaints.length ? `Not all of this link could be read: ${given.complaints.slice(0, 4).join("; ")}.` : ""); this.load(given.setup, given.view.to); });
+    window.addEventListener("hashchange", () => { const given = read(location.hash); this.left = true; this.view = { ...given.view, view: this.view.view }; usePhysical(given.view.units === "si"); this.notice(given.complaints.length ? `Not all of this link could be read: ${given.complaints.slice(0, 4).join("; ")}.` : ""); this.load(given.setup, given.view.to); });
   }
 
   legend() {
@@ -219,7 +236,7 @@ class Page {
   }
 
   parameters() {
-    const bind = (name) => {
+    const bind = this.bind = (name) => {
       const slider = $(name), number = $(`${name}-number`);
       slider.oninput = () => this.change({ [name]: Number(slider.value) });
       number.onchange = () => {
@@ -237,7 +254,35 @@ class Page {
       bind(name);
     }
     $("rest").insertAdjacentHTML("beforeend", `<label for="elasticity" title="Two readings of the paper's tension law">tension law</label><select id="elasticity"><option value="printed">as printed</option><option value="consistent">consistent</option></select><span></span>`);
-    $("elasticity").onchange = (event) => this.again({ ...this.run.setup, parameters: { ...this.run.latest, elasticity: event.target.value }, events: [] });
+    $("elasticity").onchange = (event) => this.again({ parameters: { ...this.run.latest, elasticity: event.target.value } });
+    $("law").innerHTML = Object.entries(DATA.laws).map(([name, { title }]) => `<option value="${name}">${title}</option>`).join("");
+    $("law").onchange = (event) => this.underLaw(event.target.value);
+  }
+
+  underLaw(law) {
+    const { latest } = this.run;
+    const parameters = Object.fromEntries(Object.keys(PARAMETERS).map((name) => [name, latest[name]]));
+    for (const [name, { begin }] of Object.entries(DATA.laws[law].numbers)) parameters[`laws.${name}`] = begin;
+    this.left = true;
+    this.again({ law, parameters });
+  }
+
+  // The sliders of the law's own numbers.
+  lawNumbers() {
+    const { law } = this.run.setup, box = $("law-numbers");
+    if (box.dataset.law === law) return;
+    box.dataset.law = law;
+    box.innerHTML = "";
+    for (const [key, { label, low, high, step, limits, meaning }] of Object.entries(DATA.laws[law].numbers)) {
+      const name = `laws.${key}`;
+      box.insertAdjacentHTML("beforeend", `<label for="${name}" title="${meaning}">${label}</label><input id="${name}" type="range" min="${low}" max="${high}" step="${step}"><input class="number" id="${name}-number" type="number" min="${limits[0]}" max="${limits[1]}" step="any" aria-label="${meaning}">`);
+      this.bind(name);
+    }
+    $("law").value = law;
+    $("law-words").textContent = DATA.laws[law].words;
+    $("law-shown").textContent = DATA.laws[law].title;
+    $("of-the-paper").hidden = law === "paper";
+    if (law !== "paper") $("laws").open = true;
   }
 
   hand(place, k) {
@@ -287,15 +332,12 @@ class Page {
     $("stages").classList.toggle("pair", on);
     this.active = 0;
     if (on) {
-      const { setup } = this.run;
-      second.run = new Run(this.module, { ...setup, parameters: this.run.latest, events: [] });
+      const other = this.run.latest.r_on < 40 ? { r_on: 44, zeta_1: 560 } : {};
+      this.again();
+      second.run = new Run(this.module, { ...this.run.setup, parameters: { ...this.run.latest, ...other } });
       second.named = 0;
+      second.element.querySelector(".law").textContent = this.places[0].element.querySelector(".law").textContent;
       second.stage.center = null;
-      this.active = 1;
-      if (second.run.latest.r_on < 40) second.run.change({ r_on: 44, zeta_1: 560 });
-      second.run = new Run(this.module, { ...setup, parameters: second.run.latest, events: [] });
-      this.active = 0;
-      this.again({ ...setup, parameters: this.run.latest, events: [] });
       this.active = 1;
     }
     this.outlineActive();
@@ -337,6 +379,7 @@ class Page {
   }
 
   take(what, button) {
+    if (this.run.recorded && ["link", "python", "embed"].includes(what)) return this.notice("This is a saved run, played back: its own file tells how it was made, and no link does.");
     const link = location.href.split("#")[0] + write(this.run.setup, { ...this.view, to: Math.round(this.run.now * 10) / 10 });
     const text = { link: () => link, python: () => python(this.run), embed: () => embed(location.href.split("#")[0], write(this.run.setup, { ...this.view, view: $("level").value, to: 0 }), $("level").value) }[what];
     if (text) {
@@ -348,7 +391,7 @@ class Page {
       navigator.clipboard?.writeText(box.value).then(() => this.flash(button, "Copied"), () => {});
     } else if (what === "png") png(this.place, this.run, save);
     else if (what === "csv") save(new Blob([csv(this.run)], { type: "text/csv" }), "cell.csv");
-    else clip(this.place.canvas, button, (words) => this.notice(words));
+    else this.clip = clip(this.place.canvas, button, (words) => this.notice(words)) ?? this.clip;
   }
 
   flash(button, words) {
@@ -366,9 +409,15 @@ async function begin() {
     module = await loadModule();
   } catch (error) {
     document.body.classList.remove("loading");
-    document.body.classList.add("still");
+    document.body.classList.add("still", given.view.view);
     $("notice").hidden = false;
-    $("notice").textContent = `${error.message} The page needs a browser of 2023 or newer with WebAssembly and its SIMD part: Chromium 91, Firefox 113 or Safari 16.4 do.`;
+    $("notice").textContent = `${error.message} The page needs a browser of 2023 or newer with WebAssembly and its SIMD part: Chromium 91, Firefox 113 or Safari 16.4 do. The picture is of a cell computed before: its way, and its edge now and then.`;
+    const { r_on, zeta_1 } = given.setup.parameters;
+    const near = (preset) => Math.hypot((preset.point[0] - r_on) / 50, (preset.point[1] - zeta_1) / 100);
+    const [nearest] = DATA.presets.filter((preset) => preset.point).sort((a, b) => near(a) - near(b));
+    const canvas = document.querySelector("canvas.cell");
+    thumbnail(canvas, nearest);
+    canvas.setAttribute("aria-label", `The way of a cell at binding rate ${nearest.point[0]}, adhesive friction ${nearest.point[1]}: ${nearest.words}`);
     return;
   }
   window.page = new Page(module, given);

@@ -19,7 +19,7 @@ export class Recording extends Run {
     this.recorded = true;
     this.frames = Object.fromEntries(Object.entries(kept.fields).map(([name, packed]) => [name, unpacked(packed)]));
     this.cell = { fields: Object.fromEntries(FIELDS.map((name) => [name, new Float64Array(POINTS)])), time: 0 };
-    this.setup = { parameters: { ...PARAMETERS, ...kept.parameters }, seed: 1, rtol: 1e-4, events: [], islands: [], pillars: [], pokes: [] };
+    this.setup = { law: "paper", parameters: { ...PARAMETERS, ...kept.parameters }, seed: 1, rtol: 1e-4, events: [], islands: [], pillars: [], pokes: [] };
     this._clear();
     this.frame = -1;
     this.now = kept.t[0];

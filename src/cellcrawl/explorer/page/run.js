@@ -1,6 +1,6 @@
 // A run: a cell from its start on, what is done to it, and what has been seen of it.
 
-import { Cell, ENDS, FIELDS, POINTS } from "./cell.js";
+import { Cell, ENDS, FIELDS, NEVER, POINTS } from "./cell.js";
 import { DATA } from "./data.js";
 import { classify } from "./rule.js";
 
@@ -15,6 +15,19 @@ export const PARAMETERS = {
   r_on: 26, zeta_1: 600, D: 0.05, epsilon: 0.001, h: 0.01, sigma_c: 100, k_sigma: 1000, r_p: 50, elasticity: "printed",
 };
 
+// Numbers of a law as its class has them unless given.
+export function usual(law = "paper") {
+  return Object.fromEntries(Object.entries(DATA.laws[law].numbers).map(([name, { usual: value }]) => [`laws.${name}`, value]));
+}
+
+// Why a law cannot be used with some parameters, or "".
+export function complaint(law, parameters) {
+  const limit = (parameters.r_p * Math.log(parameters.r_p)) / Math.max(parameters.sigma_c, 1e-300); // v_p / sigma_c
+  if (law === "swept-myosin" && parameters["laws.sweep"] >= limit)
+    return `A sweep of ${limit.toPrecision(3)} or more gathers motors faster than the bonds can hold them: the forces have no one balance.`;
+  return "";
+}
+
 export const STATUS = {
   running: "",
   fragmented: "The edge has crossed itself: the cell tears here, and the model says nothing about what follows.",
@@ -22,38 +35,42 @@ export const STATUS = {
   unresolved: "The edge has more detail than the solver can follow at this tolerance.",
   step_too_small: "The solver's step has shrunk to nothing: try another seed or other parameters.",
   played: "The saved run ends here.",
+  refused: "Under these laws the forces have no one balance at such numbers.",
+  no_rest: "Under these laws no circle is at rest: no force on the bonds makes the network flow back as fast as it grows. Another value, or another law, has one.",
   failed: "The solver has failed: try another seed or other parameters.",
 };
 
 export class Run {
   constructor(module, setup) {
-    if (module) this.cell = new Cell(module, { rtol: setup.rtol ?? 1e-4 });
+    if (module) this.cell = new Cell(module, { rtol: setup.rtol ?? 1e-4, law: setup.law ?? "paper" });
     this.begin(setup);
   }
 
   begin(setup) {
     this.setup = {
-      parameters: { ...PARAMETERS, ...setup.parameters },
+      law: setup.law ?? "paper",
+      parameters: { ...PARAMETERS, ...usual(setup.law), ...setup.parameters },
       seed: setup.seed ?? 1,
       rtol: setup.rtol ?? 1e-4,
-      events: (setup.events ?? []).map((event) => ({ at: event.at, set: { ...event.set } })),
-      islands: [...(setup.islands ?? [])],
-      pillars: [...(setup.pillars ?? [])],
+      events: (setup.events ?? []).map(({ at, to = at, set }) => ({ at, to, set: { ...set } })),
+      islands: (setup.islands ?? []).map((disc) => [...disc]),
+      pillars: (setup.pillars ?? []).map((disc) => [...disc]),
       pokes: (setup.pokes ?? []).map((poke) => ({ ...poke })).sort((a, b) => a.at - b.at),
     };
     this._clear();
-    const { islands, pillars } = this.setup;
-    if (islands.length || pillars.length) this.cell.paint(islands, pillars);
-    const failed = this.cell.begin(this.parameters, this.setup.seed);
-    if (failed) this._end(failed, 0);
-    else this._record(0);
+    this.cell.paint(this.setup);
+    const failed = complaint(this.setup.law, this.parameters) ? "refused" : this.cell.begin(this.parameters, this.setup.seed);
+    if (!failed) return this._record(0);
+    this._end(failed, 0);
+    const { x, y } = this.cell.fields;
+    for (let i = 0; i < POINTS; i++) [x[i], y[i]] = [Math.cos((2 * Math.PI * i) / POINTS), Math.sin((2 * Math.PI * i) / POINTS)];
   }
 
   _clear() {
     this.parameters = { ...this.setup.parameters };
     this.status = "running";
     this.ended = 0; // when
-    this.exact = true; // whether the setup alone makes this run
+    this.ramping = null; // the event on its way
     this.now = 0;
     this.count = 0; // records so far
     this.changed = 0; // time of the last change
@@ -71,12 +88,12 @@ export class Run {
     this.mode = { mode: "", confidence: 0, words: "" };
   }
 
-  // Change parameters as soon as can be said in a schedule; returns when.
-  change(values) {
+  // Change parameters as soon as can be said in a schedule, at once or evenly over some time.
+  change(values, over = 0) {
     const waiting = this.setup.events[this.done];
-    if (waiting) Object.assign(waiting.set, values);
-    else this.setup.events.push({ at: this._soon(), set: { ...values } });
-    return this.setup.events.at(-1).at;
+    if (waiting) return Object.assign(waiting.set, values);
+    const at = Math.max(this._soon(), this.ramping?.to ?? 0);
+    this.setup.events.push({ at, to: at + over, set: { ...values } });
   }
 
   // Touch the edge at a place: "release" or "push".
@@ -89,25 +106,33 @@ export class Run {
     return poke;
   }
 
-  // Ground painted on the way: the run as it is cannot be had from its setup any more.
+  // A disc of ground, there from now on, or from the start where nothing has been computed.
   paint(kind, disc) {
     const discs = this.setup[kind];
     if (discs.length >= DATA.layout.most_discs) return false;
-    discs.push(disc.map((value) => Math.round(value * 100) / 100));
+    const rounded = disc.map((value) => Math.round(value * 100) / 100);
+    discs.push(this.now > 0 ? [...rounded, this._soon()] : rounded);
     this._ground();
     return true;
   }
 
   wipe() {
-    this.setup.islands.length = this.setup.pillars.length = 0;
+    const end = this._soon();
+    for (const kind of ["islands", "pillars"])
+      if (this.now > 0) this.setup[kind] = this.setup[kind].map(([x, y, radius, begin = -NEVER, old = Infinity]) => [x, y, radius, begin, Math.min(old, Math.max(end, begin))]);
+      else this.setup[kind] = [];
     this._ground();
   }
 
   _ground() {
     if (this.status !== "running") return;
-    this.exact = this.exact && this.now === 0;
-    this.changed = this.now;
-    this.cell.paint(this.setup.islands, this.setup.pillars);
+    if (this.now === 0) return this.begin(this.setup);
+    this.cell.paint(this.setup);
+  }
+
+  // Discs of a kind that are there at the end of all changes, as discs of a fresh run.
+  lasting(kind) {
+    return this.setup[kind].filter((disc) => disc.length < 5).map((disc) => disc.slice(0, 3));
   }
 
   _soon() {
@@ -115,7 +140,7 @@ export class Run {
   }
 
   get latest() {
-    return Object.assign({}, this.parameters, ...this.setup.events.slice(this.done).map((event) => event.set));
+    return Object.assign({}, this.parameters, this.ramping?.set, ...this.setup.events.slice(this.done).map((event) => event.set));
   }
 
   // Go on to a time, or as far as the deadline (of performance.now) allows.
@@ -139,27 +164,38 @@ export class Run {
     const { cell, setup } = this;
     for (;;) {
       const poke = setup.pokes[this.poked], event = setup.events[this.done];
+      const turn = this.ramping ? this.ramping.to : event?.at; // when the parameters change next
       if (poke && poke.at - cell.time < 0.11) {
         cell.pulse({ ...DATA.pulses[poke.kind], x: poke.x, y: poke.y, at: poke.at });
         this.poked += 1;
         this.changed = poke.at;
         continue;
       }
-      if (cell.time >= next && !(event && event.at <= next)) return "";
+      if (cell.time >= next && !(turn <= next)) return "";
       const stop = Math.min(next, poke ? poke.at - 0.105 : Infinity);
-      if (!event || event.at > stop) {
-        const code = stop > cell.time ? cell.advance(stop, event?.at) : 0;
-        if (code) return ENDS[code] ?? "failed";
-        if (stop < next) continue;
-        return "";
-      }
-      const code = event.at > cell.time ? cell.advance(event.at, event.at) : 0;
+      const changes = turn <= stop, goal = changes ? turn : stop;
+      const code = goal > cell.time ? cell.advance(goal, turn) : 0;
       if (code) return ENDS[code] ?? "failed";
-      Object.assign(this.parameters, event.set);
-      cell.set(this.parameters);
-      this.changed = event.at;
-      this.done += 1;
+      if (changes) this._turn(event, turn);
+      else if (stop >= next) return "";
     }
+  }
+
+  // A change is due: a jump, or the begin or end of a ramp.
+  _turn(event, time) {
+    const { cell } = this;
+    if (!this.ramping) {
+      this.done += 1;
+      if (event.to > event.at) {
+        this.ramping = event;
+        cell.change(this.parameters, event);
+        return;
+      }
+    }
+    Object.assign(this.parameters, (this.ramping ?? event).set);
+    this.ramping = null;
+    this.changed = time;
+    cell.set(this.parameters);
   }
 
   _end(status, time) {
@@ -175,7 +211,7 @@ export class Run {
         time = this._traceBack(time);
         seen = this.cell.sample(time);
         this.now = time;
-      } else this.valid = { at: time, cell: this.cell.checkpoint(), done: this.done, poked: this.poked, parameters: { ...this.parameters } };
+      } else this.valid = { at: time, cell: this.cell.checkpoint(), done: this.done, poked: this.poked, ramping: this.ramping, parameters: { ...this.parameters } };
     }
     this._keep(time, seen);
   }
@@ -188,7 +224,7 @@ export class Run {
     }
     const back = () => {
       this.cell.restore(this.valid.cell);
-      Object.assign(this, { done: this.valid.done, poked: this.valid.poked, parameters: { ...this.valid.parameters } });
+      Object.assign(this, { done: this.valid.done, poked: this.valid.poked, ramping: this.valid.ramping, parameters: { ...this.valid.parameters } });
     };
     let good = this.valid.at;
     while (crossed - good > 1e-4) {
@@ -247,16 +283,19 @@ export class Run {
   name() {
     if (this.status === "fragmented") return this.mode;
     const { recent } = this;
-    const used = this.indices(WINDOW).filter((k) => recent.t[k] >= this.changed);
+    const turns = [...this.setup.islands, ...this.setup.pillars].flatMap((disc) => disc.slice(3)).filter((time) => time <= this.now);
+    const since = Math.max(this.changed, ...turns);
+    const used = this.indices(WINDOW).filter((k) => recent.t[k] >= since);
     if (used.length < 12) return (this.mode = { mode: "", confidence: 0, words: "too early to tell" });
     const pick = (name) => Float64Array.from(used, (k) => recent[name][k]);
     const areas = pick("area").sort();
     const radius = Math.sqrt(areas[areas.length >> 1] / Math.PI);
-    this.mode = classify(pick("t"), pick("x"), pick("y"), radius, this.changed);
+    this.mode = classify(pick("t"), pick("x"), pick("y"), radius, since);
     return this.mode;
   }
 
   sample() {
+    if (!this.count) return { time: 0, tension: NaN, length: 2 * Math.PI, area: Math.PI, x: 0, y: 0, simple: true };
     return this.cell.sample(Math.min(this.now, this.cell.time));
   }
 }

@@ -1,10 +1,14 @@
 // The picture of one cell: ground, track, outline coloured by a field.
 
-import { POINTS } from "./cell.js";
+import { NEVER, POINTS } from "./cell.js";
+import { DATA } from "./data.js";
 import { SCALES, css, level, table } from "./colours.js";
 import { scaled, shown, digits, unit } from "./units.js";
 
 const INK = "#222222", TRACK = "#b5338a", BODY = "#f1f1f1", GROUND = "#c9a86a", WALL = "#6f6f6f";
+
+const APPEARS = DATA.layout.appears; // time over which a disc comes or goes
+const swell = (u) => { const v = Math.min(Math.max(u, 0), 1); return v * v * (3 - 2 * v); };
 
 export function fit(canvas) {
   // Give a canvas as many pixels as the screen has there; returns its context and size.
@@ -65,7 +69,7 @@ export class Stage {
     context.fillStyle = "#fcfcfb";
     context.fillRect(0, 0, width, height);
     this._dots(context, width, height, X, Y);
-    this._ground(context, run.setup, X, Y);
+    this._ground(context, run.setup, run.now, X, Y);
     if (this.showTrack) this._track(context, run, seen, X, Y);
     this._cell(context, run.cell.fields, X, Y);
     this._pokes(context, run.setup.pokes, run.now, X, Y);
@@ -94,26 +98,27 @@ export class Stage {
         context.fillRect(X(x) - 1, Y(y) - 1, 2, 2);
   }
 
-  _ground(context, { islands, pillars }, X, Y) {
+  _ground(context, { islands, pillars }, now, X, Y) {
     const s = this.scale;
+    const disc = ([x, y, r, begin = -NEVER, end = NEVER]) => {
+      // as large as what the cell feels of it
+      const part = swell((now - begin) / APPEARS) * (1 - swell((now - end) / APPEARS));
+      context.moveTo(X(x) + r * part * s, Y(y));
+      context.arc(X(x), Y(y), r * part * s, 0, 2 * Math.PI);
+    };
     if (islands.length) {
       context.save();
       context.beginPath();
-      for (const [x, y, r] of islands) {
-        context.moveTo(X(x) + r * s, Y(y));
-        context.arc(X(x), Y(y), r * s, 0, 2 * Math.PI);
-      }
+      islands.forEach(disc);
       context.fillStyle = GROUND;
       context.globalAlpha = 0.38;
       context.fill("nonzero");
       context.restore();
     }
     context.fillStyle = WALL;
-    for (const [x, y, r] of pillars) {
-      context.beginPath();
-      context.arc(X(x), Y(y), r * s, 0, 2 * Math.PI);
-      context.fill();
-    }
+    context.beginPath();
+    pillars.forEach(disc);
+    context.fill("nonzero");
   }
 
   _track(context, run, seen, X, Y) {

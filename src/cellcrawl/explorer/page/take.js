@@ -1,10 +1,10 @@
 // What can be taken home: code, pictures, numbers, a clip.
 
-import { POINTS } from "./cell.js";
+import { NEVER, POINTS } from "./cell.js";
+import { DATA } from "./data.js";
 import { PARAMETERS } from "./run.js";
 
-const LONGEST_CLIP = 60; // seconds
-const plain = (value) => (Number.isInteger(value) ? `${value}.0` : String(value));
+const plain = (value) => (Number.isInteger(value) && Math.abs(value) < 1e15 ? `${value}.0` : String(value));
 
 export function save(blob, name) {
   const link = document.createElement("a");
@@ -14,28 +14,44 @@ export function save(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 5000);
 }
 
-// The changes of a run as the package's Schedule has them: jumps at times.
+// The changes of a run as the package's Schedule has them: jumps at times, and ramps.
 export function schedule(setup) {
   const points = {};
   const now = { ...setup.parameters };
   for (const event of setup.events)
     for (const [name, value] of Object.entries(event.set)) {
-      (points[name] ??= []).push([event.at, now[name]], [event.at, value]);
+      (points[name] ??= []).push([event.at, now[name]], [event.to ?? event.at, value]);
       now[name] = value;
     }
   return points;
 }
 
+const row = (values) => `[${values.map(plain).join(", ")}]`;
+
+// What surrounds the cell, as lines of Python.
+function surroundings({ islands, pillars, pokes }) {
+  const discs = (kind, rows) => {
+    const timed = rows.some((disc) => disc.length > 3);
+    const whole = timed ? rows.map((disc) => [...disc, ...[-NEVER, NEVER].slice(disc.length - 3)]) : rows;
+    return rows.length ? [`    cc.surroundings.${kind}([`, ...whole.map((disc) => `        ${row(disc)},`), "    ]),"] : [];
+  };
+  const pulse = ({ kind, at, x, y }) => `    cc.surroundings.LocalPulse(${Object.entries({ x, y, begin: at, ...DATA.pulses[kind] }).map(([name, value]) => `${name}=${plain(value)}`).join(", ")}),`;
+  return [...discs("Islands", islands), ...discs("Pillars", pillars), ...pokes.map(pulse)];
+}
+
 export function python(run) {
-  const { setup } = run;
-  const given = Object.entries(setup.parameters).filter(([name, value]) => value !== PARAMETERS[name] || name === "r_on" || name === "zeta_1");
+  const { setup } = run, law = DATA.laws[setup.law];
+  const given = Object.entries(setup.parameters).filter(([name, value]) => !name.startsWith("laws.") && (value !== PARAMETERS[name] || name === "r_on" || name === "zeta_1"));
   const lines = [
     "import cellcrawl as cc", "",
     `p = cc.Parameters(${given.map(([name, value]) => `${name}=${typeof value === "string" ? `"${value}"` : value}`).join(", ")})`,
     `options = {"start": cc.RandomPerturbation(seed=${setup.seed})}`,
   ];
+  if (setup.law !== "paper") lines.push(`options["laws"] = cc.laws.${law.python}(${Object.keys(law.numbers).map((name) => `${name}=${plain(setup.parameters[`laws.${name}`])}`).join(", ")})`);
   const points = Object.entries(schedule(setup));
   if (points.length) lines.push(`options["schedule"] = cc.Schedule({`, ...points.map(([name, list]) => `    "${name}": [${list.map(([t, v]) => `(${plain(t)}, ${plain(v)})`).join(", ")}],`), "})");
+  const around = surroundings(setup);
+  if (around.length) lines.push('options["surroundings"] = [', ...around, "]");
   if (setup.rtol !== 1e-4) lines.push(`options["rtol"] = ${setup.rtol}`);
   lines.push(`run = cc.simulate(p, t_end=${plain(Math.max(1, Math.round(run.now * 10) / 10))}, **options)`, "print(cc.classify(run).mode)", 'cc.movie(run, "cell.mp4")');
   return lines.join("\n") + "\n";
@@ -59,27 +75,4 @@ export function csv(run) {
 
 export function png(place, run, then) {
   place.canvas.toBlob((blob) => then(blob, `cell-t${run.now.toFixed(1)}.png`), "image/png");
-}
-
-let recorder = null;
-
-export function clip(canvas, button, notice) {
-  if (recorder) return recorder.stop();
-  if (!canvas.captureStream || typeof MediaRecorder === "undefined") return notice("This browser cannot record a clip of a canvas.");
-  const type = ["video/mp4;codecs=avc1", "video/webm;codecs=vp9", "video/webm"].find((name) => MediaRecorder.isTypeSupported(name));
-  if (!type) return notice("This browser cannot record a clip.");
-  const parts = [], kept = button.textContent;
-  recorder = new MediaRecorder(canvas.captureStream(50), { mimeType: type, videoBitsPerSecond: 8e6 });
-  recorder.ondataavailable = (event) => event.data.size && parts.push(event.data);
-  const began = performance.now();
-  const ticking = setInterval(() => (button.textContent = `Stop (${Math.floor((performance.now() - began) / 1000)} s)`), 250);
-  const limit = setTimeout(() => recorder?.stop(), LONGEST_CLIP * 1000);
-  recorder.onstop = () => {
-    clearInterval(ticking);
-    clearTimeout(limit);
-    button.textContent = kept;
-    save(new Blob(parts, { type }), `cell.${type.includes("mp4") ? "mp4" : "webm"}`);
-    recorder = null;
-  };
-  recorder.start(1000);
 }

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
 
+from cellcrawl._elementary import natural_logarithm
 from cellcrawl.errors import InputError
 from cellcrawl.solvers.adaptive import drive, resolution
 from cellcrawl.solvers.adaptive import state as layout
@@ -257,7 +257,7 @@ class AdaptiveSolver(Solver):
         differences[0] = layout.from_cell(start, nodes)
         self._hold(differences)
         project(self._table[0], nodes, self._work)
-        self._log_rate = np.full(nodes, math.log(self._conditions.at(self.time).r_p))
+        self._log_rate = np.full(nodes, natural_logarithm(self._conditions.at(self.time).r_p))
         if not self._restart():
             raise InputError(
                 "the start has no off-rate r >= 1 that balances the forces everywhere: "
