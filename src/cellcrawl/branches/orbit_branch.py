@@ -136,7 +136,8 @@ class OrbitBranch:
             low, high = one.tension_range
             row: dict[str, Any] = {
                 self.name: one.setting.value(self.name), "kind": one.kind, "period": one.period,
-                "turn": one.turn, "speed": one.speed, "tension_least": low,
+                "turn": one.turn, "speed": one.speed, "speed_least": one.speed_range[0],
+                "speed_largest": one.speed_range[1], "tension_least": low,
                 "tension_largest": high, "circularity": one.circularity, "nodes": one.nodes,
             }  # fmt: skip
             if self.spectra:

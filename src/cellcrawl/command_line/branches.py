@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 _USUAL = Parameters(zeta_1=560.0)
 _COLUMNS = ("kind", "symmetry", "r_on", "zeta_1", "frequency", "speed", "turning_rate", "tension")
 _GLIDING, _TURNING = "gliding", "turning"
-_PICTURES = (("speed", "branches"), ("turning_rate", "turning-rate"), ("tension", "tension"))
 _SETTLED = 150.0  # time after which a run is on its orbit
 _NODES, _MOST = 256, 12
 
@@ -110,9 +109,7 @@ def branches(
         say("stopped; what was followed is in the files")
         return CANCELLED
     with look.used():
-        for quantity, name in _PICTURES:
-            axes = plot.branch([*made, *cycles], quantity)
-            save_picture(axes.figure, output / f"{name}.png", dpi)
+        save_picture(plot.branch_panels([*made, *cycles]), output / "branches.png", dpi)
         if lines:
             save_picture(plot.boundaries(lines).figure, output / "curves.png", dpi)
     ended = [one.status for one in made] + [one.status for one in cycles]
