@@ -103,14 +103,18 @@ def lyapunov_map(
     ]
     left = np.flatnonzero(arrays["label"] == _OPEN)
     tasks = [(cells[k], seed, t_end, law, early) for k in left]
+    written = time.monotonic()
     with FileKeeper(path, True, "a map is", "lyapunov_map"):
-        written = time.monotonic()
-        for k, answer in zip(left, _answers(tasks, executor), strict=True):
-            arrays["exponent"][k], arrays["error"][k], arrays["time"][k] = answer[:3]
-            arrays["label"][k] = answer[3]
-            if path is not None and (time.monotonic() - written > _PAUSE or k == left[-1]):
+        try:
+            for k, answer in zip(left, _answers(tasks, executor), strict=True):
+                arrays["exponent"][k], arrays["error"][k], arrays["time"][k] = answer[:3]
+                arrays["label"][k] = answer[3]
+                if path is not None and time.monotonic() - written > _PAUSE:
+                    write_arrays(path, KIND, SCHEMA, header, arrays)
+                    written = time.monotonic()
+        finally:
+            if path is not None:
                 write_arrays(path, KIND, SCHEMA, header, arrays)
-                written = time.monotonic()
     return _dataset(header, arrays)
 
 
