@@ -274,7 +274,7 @@ def _calls(folder: Path) -> Iterator[Call]:
     )  # fmt: skip
     yield call(
         ways.lyapunov_exponent, parameters=round_cell, start=None, t_end=40.0, settle=0.0,
-        laws=None, nodes=None, early=True,
+        laws=None, nodes=None, early=True, runs=1,
     )  # fmt: skip
     (chart := folder / "map.nc").unlink(missing_ok=True)
     exponents = ways.lyapunov_map(round_cell, r_on=[60.0], zeta_1=[400.0], output=chart)
@@ -304,7 +304,7 @@ def _calls(folder: Path) -> Iterator[Call]:
     yield call(ways.resume_branch, path=kept, to=56.9, most_states=3, largest_step=0.1)
     yield call(
         refused(ways.from_hopf, "Hopf"), "cellcrawl.branches.from_hopf", point=fork,
-        amplitude=0.03, nodes=256,
+        amplitude=0.01, nodes=256,
     )  # fmt: skip
     yield call(ways.branch_off, point=fork, amplitude=0.05)
     yield call(

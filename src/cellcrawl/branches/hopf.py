@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 import numpy as np
 
@@ -21,11 +22,12 @@ from cellcrawl.validation import real_number
 
 _SMALL = 1e-4  # change of angle by which the direction of the orbits is measured
 _NODES = 1024
+_LEAST: Final = 1e-3
 
 
 @checked
 @on_one_thread
-def from_hopf(point: SpecialPoint, *, amplitude: float = 0.03, nodes: int | None = None) -> Orbit:
+def from_hopf(point: SpecialPoint, *, amplitude: float = 0.01, nodes: int | None = None) -> Orbit:
     """Return a small orbit beside a Hopf point, stable or not.
 
     Parameters
@@ -33,7 +35,8 @@ def from_hopf(point: SpecialPoint, *, amplitude: float = 0.03, nodes: int | None
     point : SpecialPoint
         A Hopf point of a branch of gliding or turning cells.
     amplitude : float
-        Mean change of angle and bound fraction from the steady cell, 1e-3 to 0.3.
+        Mean change of angle and bound fraction from the steady cell, 1e-3 to 0.3; halved, down to
+        1e-3, where Newton's method leads nowhere.
     nodes : int, optional
         Even nodes along the edge, a multiple of 8 from 64; as many as the shape asks for unless
         given.
@@ -50,7 +53,7 @@ def from_hopf(point: SpecialPoint, *, amplitude: float = 0.03, nodes: int | None
     unstable) or with a jump. The parameter is that of the point plus a multiple of the amplitude's
     square. An antisymmetric change comes back after half its period as its mirror image.
     """
-    size = real_number("amplitude", amplitude, 1e-3, 0.3)
+    size = real_number("amplitude", amplitude, _LEAST, 0.3)
     count = nodes_or_none(nodes)
     if point.kind != HOPF or point.vector is None:
         raise InputError(f"orbits are born at a Hopf point, and this is a {point.kind}")
@@ -58,17 +61,19 @@ def from_hopf(point: SpecialPoint, *, amplitude: float = 0.03, nodes: int | None
     flow = Flow(setting, COARSE)
     ahead = _shape(flow, point, _SMALL) - _shape(flow, point, -_SMALL)
     direction = scaled(ahead) / np.linalg.norm(scaled(ahead))
-    guess = flow.canonical(_shape(flow, point, 0.0) + size * unscaled(direction))
     reflected = point.symmetry == ANTISYMMETRIC
     period = (1.0 if reflected else 2.0) * math.pi / point.frequency
     border = Border(point.name, direction, 0.0, 0.0, 1.0)
-    try:
-        found = close(setting, reflected, guess, period, nodes=count, border=border)
-    except (NotFound, np.linalg.LinAlgError) as error:
-        raise InputError(
-            f"no orbit was found beside the Hopf point ({error}): give another amplitude"
-        ) from None
-    return Orbit.of(setting.replace(point.name, found.parameter), reflected, found)
+    why = ""
+    while size >= _LEAST:
+        guess = flow.canonical(_shape(flow, point, 0.0) + size * unscaled(direction))
+        try:
+            found = close(setting, reflected, guess, period, nodes=count, border=border)
+        except (NotFound, np.linalg.LinAlgError) as error:
+            why, size = str(error), 0.5 * size
+            continue
+        return Orbit.of(setting.replace(point.name, found.parameter), reflected, found)
+    raise InputError(f"no orbit was found beside the Hopf point ({why}): give another amplitude")
 
 
 def _shape(flow: Flow, point: SpecialPoint, amplitude: float) -> np.ndarray:

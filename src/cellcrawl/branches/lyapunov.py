@@ -28,7 +28,7 @@ from cellcrawl.parameters import Parameters
 from cellcrawl.starts import RandomPerturbation
 from cellcrawl.starts.base import CellState, Start
 from cellcrawl.threads import on_one_thread
-from cellcrawl.validation import real_number
+from cellcrawl.validation import real_number, whole_number
 
 if TYPE_CHECKING:
     from cellcrawl.branches.state import SteadyState
@@ -46,6 +46,7 @@ _STILL = 1e-6
 _COUNTED, _COUNTED_HELD = 0.8, 0.3  # part of the time that counts, the last
 _BATCHES = 8
 _T95 = 2.36  # Student's factor for so many batches
+_T95_OF: Final = {2: 12.7, 3: 4.3, 4: 3.18, 5: 2.78, 6: 2.57, 7: 2.45, 8: 2.36, 9: 2.31, 10: 2.26}
 _ROUND = 1e-3  # spread of the bound fraction along a round cell's edge
 _CLEAR = 0.003  # rate below which growth is not told from none
 _WILD = 0.02  # rate at which a while counts as irregular
@@ -107,6 +108,7 @@ def lyapunov_exponent(
     laws: Any = None,
     nodes: int | None = None,
     early: bool = False,
+    runs: int = 1,
 ) -> LyapunovExponent:
     """Return the largest Lyapunov exponent of a cell, the known zeros taken out.
 
@@ -127,6 +129,10 @@ def lyapunov_exponent(
         Stop, from a time of 120 on, once small changes decay beyond doubt: at more than 0.01 in the
         second half, error included. A stable steady state has its leading growth rate, with no
         error and no time. Growth is measured to the end: it may be of a while only.
+    runs : int
+        Take the mean over random starts of seeds 1 to this, 1 to 1000, and the error from how far
+        they lie apart. An intermittent cell keeps to one way of moving for long: stretches of one
+        run are then too much alike, and the error they give is too small.
 
     Raises
     ------
@@ -145,6 +151,19 @@ def lyapunov_exponent(
     from cellcrawl.branches.state import SteadyState
 
     nodes = nodes_or_none(nodes)
+    count = whole_number("runs", runs, 1, 1000)
+    if count > 1:
+        if start is not None:
+            raise InputError("runs = 2 and more have random starts of their own: leave out start")
+        return _together(
+            [
+                lyapunov_exponent(
+                    parameters, start=RandomPerturbation(seed=seed), t_end=t_end, settle=settle,
+                    laws=laws, nodes=nodes, early=early,
+                )
+                for seed in range(1, count + 1)
+            ]
+        )  # fmt: skip
     try:
         if isinstance(start, Orbit | SteadyState):
             setting = start.setting
@@ -161,6 +180,23 @@ def lyapunov_exponent(
         return _measured(flow, shape, t_end, held, early)
     except NotFound:
         return LyapunovExponent(math.nan, math.nan, "torn", 0.0, np.zeros(0))
+
+
+def _together(found: Sequence[LyapunovExponent]) -> LyapunovExponent:
+    """Return the mean of runs with the larger of its errors, by the spread and by the runs' own."""
+    values = np.array([one.value for one in found])
+    count = values.size
+    spread = _T95_OF.get(count, 2.0) * float(np.std(values, ddof=1)) / math.sqrt(count)
+    own = math.sqrt(sum(one.error**2 for one in found)) / count
+    value, error = float(values.mean()), max(spread, own)
+    labels = [one.label for one in found]
+    label = max(LABELS, key=labels.count)
+    if value > max(error, _CLEAR):
+        label = "chaotic"
+    elif label == "chaotic":
+        label = "undecided"
+    course = np.concatenate([one.course for one in found])
+    return LyapunovExponent(value, error, label, sum(one.time for one in found), course)
 
 
 def _resolved(setting: Setting, cell: CellState, nodes: int | None) -> tuple[Flow, np.ndarray]:

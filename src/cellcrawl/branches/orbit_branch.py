@@ -334,27 +334,14 @@ def _advance(
     before: Orbit, walker: OrbitWalker, name: str, bounds: tuple[float, float], nodes: int | None
 ) -> Orbit | None:
     """Return the next orbit a step ahead, or nothing if even the smallest fails."""
-    shape, weights = coarse_shape(before), _weights(before, name)
     value = before.setting.value(name)
     while walker.step >= _SMALLEST:
         ahead = walker.step * walker.tangent
-        target = min(max(value + float(ahead[-1]), bounds[0]), bounds[1])
-        border = Border(
-            name, walker.tangent[:-2], weights[0] * float(walker.tangent[-2]),
-            float(walker.tangent[-1]), weights[1],
-        )  # fmt: skip
-        try:
-            setting = before.setting.replace(name, target)
-            flow = Flow(setting, COARSE)
-            guess = flow.canonical(shape + unscaled(ahead[:-2]))
-            found = close(
-                setting, before.reflected, guess, before.period + float(ahead[-2]),
-                nodes=nodes, border=border,
-            )  # fmt: skip
-        except (NotFound, np.linalg.LinAlgError, InputError):
+        ahead[-1] = min(max(value + float(ahead[-1]), bounds[0]), bounds[1]) - value
+        after = _ahead(before, ahead, walker.tangent, name, nodes)
+        if after is None:
             walker.step *= 0.4
             continue
-        after = Orbit.of(setting.replace(name, found.parameter), before.reflected, found)
         change = _apart(before, after, name)
         far = float(np.linalg.norm(change[:-2]))
         if far > _TOO_FAR and walker.step > 2.0 * _SMALLEST:
@@ -363,6 +350,27 @@ def _advance(
         walker.step *= 1.6 if far < 0.5 * _TOO_FAR else 1.0
         return after
     return None
+
+
+def _ahead(
+    before: Orbit, change: np.ndarray, tangent: np.ndarray, name: str, nodes: int | None
+) -> Orbit | None:
+    """Return the orbit a change away, that and the parameter across a tangent: also at folds."""
+    weights = _weights(before, name)
+    border = Border(
+        name, tangent[:-2], weights[0] * float(tangent[-2]), float(tangent[-1]), weights[1]
+    )
+    try:
+        value = before.setting.value(name) + float(change[-1])
+        setting = before.setting.replace(name, value)
+        guess = Flow(setting, COARSE).canonical(coarse_shape(before) + unscaled(change[:-2]))
+        found = close(
+            setting, before.reflected, guess, before.period + float(change[-2]),
+            nodes=nodes, border=border,
+        )  # fmt: skip
+    except (NotFound, np.linalg.LinAlgError, InputError):
+        return None
+    return Orbit.of(setting.replace(name, found.parameter), before.reflected, found)
 
 
 def _at_value(
@@ -439,13 +447,11 @@ def _locate(
     nodes: int | None,
 ) -> OrbitPoint | None:
     change = _apart(before, after, name)
-    value = before.setting.value(name)
     a, b, (fa, fb) = 0.0, 1.0, ends
     here, part = before, 0.0
     for _ in range(_TRIES):
         part = (a * fb - b * fa) / (fb - fa)
-        ahead = part * change
-        made = _near(before, ahead[:-2], float(ahead[-2]), name, value + float(ahead[-1]), nodes)
+        made = _ahead(before, part * change, change, name, nodes)
         if made is None:
             return None
         here = made
