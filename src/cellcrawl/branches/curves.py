@@ -8,7 +8,7 @@ numbers, and the curve is where it vanishes. One method serves for all kinds of 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -154,7 +154,7 @@ def curve_of(
     box = _box(setting, names, within)
     most = whole_number("most_points", most_points, 2, 10_000)
     largest = real_number("largest_step", largest_step, 1e-3, 0.5)
-    tracer = _Tracer(point, names, box, largest)
+    tracer = _Tracer(point, names, box, within or {}, largest)
     curve = PointCurve(point.kind, point.symmetry, names)
     sides, statuses = [], []
     for sign in (-1.0, 1.0):
@@ -200,11 +200,17 @@ class _Tracer:
         point: SpecialPoint,
         names: tuple[str, str],
         box: list[tuple[float, float]],
+        narrowed: Container[str],
         largest: float,
     ) -> None:
         self.point, self.names, self.box, self.largest = point, names, box, largest
         setting = point.state.setting
-        self.weights = np.array([weight_of(setting.value(name)) for name in names])
+        self.weights = np.array(
+            [
+                weight_of(setting.value(name), high - low if name in narrowed else 0.0)
+                for name, (low, high) in zip(names, box, strict=True)
+            ]
+        )
 
     def trace(self, sign: float, most: int) -> tuple[list[SpecialPoint], str]:
         """Return the points to one side, the first among them, and how the curve ended."""

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from cellcrawl.arguments import checked
+from cellcrawl.branches.circle import circle
 from cellcrawl.branches.flow import Flow
 from cellcrawl.branches.setting import Setting
 from cellcrawl.branches.shooting import scaled, unscaled
@@ -240,6 +241,8 @@ def _settled(
         state = polished(setting, theta, n, length, sigma)
     except InputError:
         return setting, cell, None
+    if np.ptp(state.fields.n) < _ROUND and setting.rest_area == math.pi:
+        state = circle(parameters, laws=setting.laws)
     exact = state.state(parameters, 1024)
     if flow.norm(flow.from_cell(exact) - shape) > _NEAR or not state.stable:
         return setting, cell, None  # near an unstable state a cell is only on its way
