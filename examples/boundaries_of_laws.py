@@ -28,7 +28,7 @@ kept = {}
 for name, (law, first, last, meaning) in LAWS.items():
     span = min(first, last), max(first, last)
     rows = []  # the lower and the upper onset at each value
-    for value in np.linspace(first, last, 201):
+    for value in np.linspace(first, last, 13):
         changed = law.replace(**{name: float(value)})
         found = cc.branches.onsets(cell, "r_on", 2.0, 150.0, laws=changed)
         rows.append([found[0], found[-1], float(value)] if len(found) > 1 else [np.nan] * 3)
@@ -36,7 +36,7 @@ for name, (law, first, last, meaning) in LAWS.items():
     onset = np.array([[*low, *high[::-1]], [*values, *values[::-1]]])
     gliding = cc.branches.from_circle(cell, laws=law).continue_in("r_on", 17.0)
     wobble = gliding.points("Hopf")[-1].continue_in(
-        name, within={"r_on": (2, 150), name: span}, most_points=50, largest_step=0.2
+        name, within={"r_on": (2, 150), name: span}, most_points=40, largest_step=0.3
     )
     print(name, wobble, *wobble.messages, sep="\n  ", flush=True)
     figure, ax = plt.subplots(figsize=(3.4, 3.2), layout="constrained")

@@ -244,7 +244,7 @@ class _Tracer:
                     break
                 step *= 0.4
             if after is None:
-                return found, "no convergence"
+                return found, "border" if self._at_edge(here.state.setting) else "no convergence"
             if after.state.kind == AT_REST or after.state.speed < 0.2 * here.state.speed:
                 return found, "circle"
             towards = ahead @ plane
@@ -274,6 +274,10 @@ class _Tracer:
         return any(
             not low <= value <= high for value, (low, high) in zip(values, self.box, strict=True)
         )
+
+    def _at_edge(self, setting: Setting) -> bool:
+        values = [setting.value(name) for name in self.names]
+        return any(value in edges for value, edges in zip(values, self.box, strict=True))
 
     def _near_start(self, at: _At) -> bool:
         first, here = self.point.state.setting, at.state.setting
@@ -374,10 +378,12 @@ class _Tracer:
     def _slope(self, at: _At, plane: np.ndarray) -> np.ndarray:
         """Return the derivative of the growth rate's real part on the plane, shape (2,)."""
         slopes = []
-        for k in range(2):
-            place = np.zeros(2)
-            place[k] = _DIFFERENCE
-            slopes.append((self._on_surface(at, plane, place).test - at.test) / _DIFFERENCE)
+        for place in np.eye(2) * _DIFFERENCE:
+            try:
+                away = self._on_surface(at, plane, place).test - at.test
+            except NotFound:  # a parameter at its end
+                away = at.test - self._on_surface(at, plane, -place).test
+            slopes.append(away / _DIFFERENCE)
         return np.array(slopes)
 
     def _corrected(
