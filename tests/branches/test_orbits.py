@@ -72,13 +72,12 @@ def test_small_orbits_leave_a_hopf_point_with_its_period_and_as_a_parabola():
     assert small.kind == "rotation"
     assert small.stable  # on the side where the steady turn is not: the wobble sets in gently
     assert small.parameters.r_on < wobble.value
-    birth = 2.0 * np.pi / wobble.frequency
-    for measure, at in (("period", birth), ("r_on", wobble.value)):
-        whole, quarter = (
-            (one.period if measure == "period" else one.parameters.r_on) - at
-            for one in (small, smaller)
-        )
-        assert whole / quarter == pytest.approx(4.0, rel=0.05)
+    # both change with the square of the amplitude: carried on to none they are the point's own
+    period = (4.0 * smaller.period - small.period) / 3.0
+    r_on = (4.0 * smaller.parameters.r_on - small.parameters.r_on) / 3.0
+    assert period == pytest.approx(2.0 * np.pi / wobble.frequency, rel=5e-4)
+    assert r_on == pytest.approx(wobble.value, rel=5e-5)
+    assert wobble.value - small.parameters.r_on > 0.02
     with pytest.raises(cc.InputError, match="born at a Hopf point"):
         branches.from_hopf(gliding.points("pitchfork")[0])
 

@@ -30,7 +30,7 @@ _MARKERS: Final = {
     "torn": "x",
 }
 _DIAMETER: Final = 6.0
-_BELOW = -0.17  # of the axes' height: under the label
+_BELOW = -0.13  # of the axes' height: under the label
 
 
 @checked
@@ -69,13 +69,14 @@ def lyapunov_map(
         colours = None
         for label in seen:
             here, marker = labels == label, _MARKERS[label]
-            edge = {"edgecolors": EDGE, "linewidths": 0.3} if marker != "x" else {"linewidths": 1.0}
-            drawn = axes.scatter(
-                across[here], up[here], c=rates[here], marker=marker,
-                s=(_DIAMETER * (1.4 if marker == "*" else 1.0)) ** 2,
-                cmap=colormap_for("RdBu_r"), vmin=-most, vmax=most, **edge,
-            )  # fmt: skip
-            colours = drawn if np.any(np.isfinite(rates[here])) else colours
+            size = (_DIAMETER * (1.4 if marker == "*" else 1.0)) ** 2
+            if not np.any(np.isfinite(rates[here])):  # torn: there is no rate
+                axes.scatter(across[here], up[here], color=EDGE, marker=marker, s=0.5 * size)
+            else:
+                colours = axes.scatter(
+                    across[here], up[here], c=rates[here], marker=marker, s=size, edgecolors=EDGE,
+                    linewidths=0.3, cmap=colormap_for("RdBu_r"), vmin=-most, vmax=most,
+                )  # fmt: skip
             key = Line2D(
                 [], [], linestyle="none", marker=marker, markerfacecolor="white",
                 markeredgecolor=EDGE, markeredgewidth=0.5, markersize=5.0,
