@@ -33,7 +33,7 @@ for name, (law, first, last, meaning) in LAWS.items():
         found = cc.branches.onsets(cell, "r_on", 2.0, 150.0, laws=changed)
         rows.append([found[0], found[-1], float(value)] if len(found) > 1 else [np.nan] * 3)
     low, high, values = np.array(rows)[np.isfinite(rows).all(axis=1)].T
-    onset = np.array([[*low, *high[::-1]], [*values, *values[::-1]]])
+    onset = np.array([[*low, np.nan, *high], [*values, np.nan, *values]])  # open at the top
     gliding = cc.branches.from_circle(cell, laws=law).continue_in("r_on", 17.0)
     wobble = gliding.points("Hopf")[-1].continue_in(
         name, within={"r_on": (2, 150), name: span}, most_points=40, largest_step=0.3
@@ -47,7 +47,8 @@ for name, (law, first, last, meaning) in LAWS.items():
                   loc="outside upper center", frameon=False)  # fmt: skip
     figure.savefig(folder / f"law-{name}.png", dpi=200)
     kept[name] = {
-        "onset": onset.T.round(8).tolist(), "wobble": wobble.values.round(8).tolist(),
+        "onset": np.array([low, high, values]).T.round(8).tolist(),
+        "wobble": wobble.values.round(8).tolist(),
         "ends": list(wobble.messages),
     }  # fmt: skip
     (folder / "boundaries-of-laws.json").write_text(json.dumps(kept), encoding="utf-8")
