@@ -26,7 +26,8 @@ def boundaries(cell: cc.Parameters) -> list[cc.branches.PointCurve]:
     forks, wobbles = gliding.points("pitchfork"), gliding.points("Hopf")
     turning = forks[0].branch_off().continue_in("r_on", 0.75 * forks[0].value)
     points = [forks[0], wobbles[-1], *turning.points("Hopf")[:1]]
-    return [point.continue_in("zeta_1", within=BOX) for point in points]
+    options = {"within": BOX, "most_points": 60, "largest_step": 0.2}
+    return [point.continue_in("zeta_1", **options) for point in points]
 
 
 plt.rcParams.update(cc.plot.house_style())

@@ -132,6 +132,7 @@ def continue_in(
     value = state.setting.value(name)
     if to == value:
         raise InputError(f"the state has {name} = {value:g} already: give another value to go to")
+    state.setting.replace(name, to)  # refuses now what has no states
     if state.kind == AT_REST:
         raise InputError(
             "this state is the resting circle, which is known at all parameters: begin from a "
@@ -342,7 +343,7 @@ def _at_value(walker: Walker, value: float) -> SteadyState | None:
     try:
         setting = state.setting.replace(walker.name, value)
         root = system.solve(setting, guess, state.phi)
-    except NotFound:
+    except (NotFound, InputError):  # at the end of a range there may be no states
         return None
     found = SteadyState.of(setting, system, root)
     return None if found.kind == AT_REST else found

@@ -227,6 +227,7 @@ def continue_orbit(
     value = start.setting.value(name)
     if to == value:
         raise InputError(f"the orbit has {name} = {value:g} already: give another value to go to")
+    start.setting.replace(name, to)  # refuses now what has no orbits
     branch = OrbitBranch(name, to, [start], spectra=spectra)
     branch.nodes = nodes_or_none(nodes)
     change, longer = on_one_thread(answer)(
@@ -385,11 +386,11 @@ def _at_value(
 def _near(
     before: Orbit, change: np.ndarray, longer: float, name: str, value: float, nodes: int | None
 ) -> Orbit | None:
-    setting = before.setting.replace(name, value)
     try:
+        setting = before.setting.replace(name, value)
         guess = Flow(setting, COARSE).canonical(coarse_shape(before) + unscaled(change))
         found = close(setting, before.reflected, guess, before.period + longer, nodes=nodes)
-    except NotFound:
+    except (NotFound, InputError):  # at the end of a range there may be no orbits
         return None
     return Orbit.of(setting, before.reflected, found)
 
