@@ -1,15 +1,17 @@
-"""Time branches: states with growth rates, crossings, and a curve of special points.
+"""Time branches: states with growth rates, crossings, a curve of points, orbits, an exponent.
 
     python benchmarks/branches.py [--output DIR]
 
-Processor time on one core, so that a busy machine does not count. The gliding cells at zeta_1 = 560
-from where they leave the circle down to r_on = 12.
+Processor time on one core; a machine that is busy beside it still adds a part, and the load is
+kept with the numbers. The gliding cells at zeta_1 = 560 from where they leave the circle down to
+r_on = 12; the zigzag (26, 600) under both tension laws; the exponent of (44, 560).
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import os
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -53,7 +55,25 @@ def measured() -> dict[str, float]:
         "crossings": float(len(branch.special_points)),
         "longest_interval_with_crossings_seconds": longest,
         "curve_point_seconds": curve_time / len(curve),
+        **of_orbits(),
     }
+
+
+def of_orbits() -> dict[str, float]:
+    """Return processor times of an orbit under either law, and of a time unit of an exponent."""
+    found = {}
+    cell = cc.Parameters(r_on=26, zeta_1=600)
+    for law in ("printed", "consistent"):
+        run = cc.simulate(cell.replace(elasticity=law), 120.0, save_every=1.0)
+        if not found:
+            cc.branches.orbit(run, nodes=256)  # compiles
+        seconds, made = timed(lambda run=run: cc.branches.orbit(run))
+        found[f"orbit_{law}_seconds"] = seconds
+        found[f"orbit_{law}_nodes"] = float(made.nodes)
+        found[f"multipliers_{law}_seconds"] = timed(lambda made=made: made.multipliers)[0]
+    spinning = cell.replace(r_on=44, zeta_1=560)
+    seconds, _ = timed(lambda: cc.branches.lyapunov_exponent(spinning, t_end=100.0))
+    return {**found, "exponent_seconds_per_time": seconds / 160.0}
 
 
 def main() -> None:
@@ -66,7 +86,8 @@ def main() -> None:
         print(f"{name:42} {value:8.3f}")
     if asked.output is not None:
         asked.output.mkdir(parents=True, exist_ok=True)
-        content = {"machine": record(), "branches": found}
+        load = os.getloadavg()[0] if hasattr(os, "getloadavg") else None
+        content = {"machine": record(), "load": load, "branches": found}
         (asked.output / "branches.json").write_text(json.dumps(content, indent=1), "utf-8")
 
 

@@ -276,12 +276,16 @@ def _calls(folder: Path) -> Iterator[Call]:
     )  # fmt: skip
     yield call(
         ways.lyapunov_exponent, parameters=round_cell, start=None, t_end=40.0, settle=0.0,
-        laws=None, nodes=None,
+        laws=None, nodes=None, early=True, runs=1,
     )  # fmt: skip
+    (chart := folder / "map.nc").unlink(missing_ok=True)
+    exponents = ways.lyapunov_map(round_cell, r_on=[60.0], zeta_1=[400.0], output=chart)
     yield call(
         ways.lyapunov_map, parameters=round_cell, r_on=[60.0], zeta_1=[400.0], seed=1, t_end=40.0,
-        laws=None, executor=InProcess(),
+        laws=None, early=True, output=None, executor=InProcess(),
     )  # fmt: skip
+    yield call(ways.open_lyapunov_map, path=chart)
+    yield call(cc.plot.lyapunov_map, found=exponents, limit=0.05, legend=True, ax=ax())
     yield call(
         ways.basins, parameters=round_cell, starts=1, amplitude=0.01, t_end=20.0, laws=None,
         executor=InProcess(),
@@ -300,12 +304,17 @@ def _calls(folder: Path) -> Iterator[Call]:
     )  # fmt: skip
     yield call(ways.open_branch, path=kept)
     yield call(ways.resume_branch, path=kept, to=56.9, most_states=3, largest_step=0.1)
+    yield call(
+        refused(ways.from_hopf, "Hopf"), "cellcrawl.branches.from_hopf", point=fork,
+        amplitude=0.01, nodes=256,
+    )  # fmt: skip
     yield call(ways.branch_off, point=fork, amplitude=0.05)
     yield call(
         ways.curve_of, point=fork, second="zeta_1", within={"zeta_1": (559.0, 561.0)},
         most_points=2, largest_step=0.05,
     )  # fmt: skip
     yield call(cc.plot.branch, branches=[branch], quantity="speed", legend=True, ax=ax())
+    yield call(cc.plot.branch_panels, branches=[branch], title="at 560")
     yield call(cc.plot.boundaries, curves=[boundary], onset=True, legend=True, ax=ax())
     # starts
     yield call(cc.RandomPerturbation, seed=2, amplitude=1e-4, modes=10)

@@ -73,7 +73,22 @@ def laws(work: Path) -> None:
 
 def branches(work: Path) -> None:
     """Gliding and turning cells, and their boundaries."""
-    command("examples/branches.py", IMAGES / "branches")
+    from cellcrawl import branches, plot
+
+    pictures, chart, kept = IMAGES / "branches", work / "diagram", work / "branches"
+    command("examples/branches.py", pictures)
+    command("examples/boundaries_of_laws.py", pictures)
+    copy(pictures / "boundaries-of-laws.json", RESULTS / "boundaries-of-laws.json")
+    (pictures / "boundaries-of-laws.json").unlink()
+    command("examples/diagram_with_curves.py", chart)
+    copy(chart / "diagram.png", pictures / "diagram.png")
+    copy(chart / "diagram.json", RESULTS / "diagram.json")
+    for zeta_1 in ("560", "600"):
+        asked = ("--turning", "--orbits", "24,34", "--zeta-1", zeta_1, "--overwrite")
+        command("-m", "cellcrawl", "branches", *asked, "--output", kept / zeta_1)
+        copy(kept / zeta_1 / "branches.png", pictures / f"one-parameter-{zeta_1}.png")
+    exponents = branches.open_lyapunov_map(RESULTS / "lyapunov-map.nc")
+    plot.lyapunov_map(exponents).figure.savefig(pictures / "lyapunov-map.png", dpi=200)
 
 
 def model(work: Path) -> None:

@@ -16,6 +16,7 @@ def script(path: str):
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
+    sys.modules.setdefault(spec.name, module)  # a dataclass looks for its module there
     spec.loader.exec_module(module)
     return module
 
@@ -47,3 +48,12 @@ def test_the_solvers_page_has_a_place_for_every_record(monkeypatch):
     page = (ROOT / "docs" / "solvers.md").read_text("utf-8")
     for name in script("tools/solvers_page.py").PARTS:
         assert page.count(f"<!-- {name} -->") == page.count(f"<!-- end of {name} -->") == 1
+
+
+def test_the_branch_code_finds_where_a_particle_of_closed_form_begins_to_turn():
+    particle = script("benchmarks/particle.py")
+    for motor in (particle.Motor(0.3), particle.Motor(0.3, 1.3, 0.7, 0.4)):
+        (point,) = particle.ours(motor)
+        assert point.kind == "pitchfork"
+        assert point.value == pytest.approx(motor.turns_at, abs=1e-9)
+    assert particle.Motor(0.3).turns_at == 0.75

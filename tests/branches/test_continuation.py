@@ -135,6 +135,8 @@ def test_what_cannot_be_followed_is_refused_in_one_line(branch):
         branches.circle(HIGH).continue_in("r_on", 20)
     with pytest.raises(cc.InputError, match="k_sigma = 0"):
         branches.gliding(HIGH.replace(k_sigma=0))
+    with pytest.raises(cc.InputError, match="k_sigma = 0"):  # before anything is computed
+        branch[0].continue_in("k_sigma", 0.0)
 
 
 def test_turning_cells_go_on_from_where_gliding_ones_begin_to_turn():

@@ -63,6 +63,37 @@ def test_a_run_from_an_orbit_comes_back_with_its_period(rotation):
     assert far[0] == pytest.approx(far[1], abs=1e-4)
 
 
+def test_small_orbits_leave_a_hopf_point_with_its_period_and_as_a_parabola():
+    gliding = branches.from_circle(cc.Parameters(r_on=56, zeta_1=560)).continue_in("r_on", 54)
+    turning = gliding.points("pitchfork")[0].branch_off()
+    (wobble,) = turning.continue_in("r_on", 44.2).points("Hopf")
+    assert wobble.value == pytest.approx(44.330986, abs=1e-6)  # of an independent code
+    small, smaller = (branches.from_hopf(wobble, amplitude=a, nodes=256) for a in (0.01, 0.005))
+    assert small.kind == "rotation"
+    assert small.stable  # on the side where the steady turn is not: the wobble sets in gently
+    assert small.parameters.r_on < wobble.value
+    # both change with the square of the amplitude: carried on to none they are the point's own
+    period = (4.0 * smaller.period - small.period) / 3.0
+    r_on = (4.0 * smaller.parameters.r_on - small.parameters.r_on) / 3.0
+    assert period == pytest.approx(2.0 * np.pi / wobble.frequency, rel=5e-4)
+    assert r_on == pytest.approx(wobble.value, rel=5e-5)
+    assert wobble.value - small.parameters.r_on > 0.02
+    with pytest.raises(cc.InputError, match="born at a Hopf point"):
+        branches.from_hopf(gliding.points("pitchfork")[0])
+
+
+def test_extremes_of_a_rotation_lie_about_its_means(rotation):
+    low, high = rotation.speed_range
+    assert low < rotation.speed < high
+    turning = rotation.turning_rate_range
+    assert turning[0] < rotation.turning_rate < turning[1]
+    p = rotation.parameters
+    run = cc.simulate(p, t_end=rotation.period, start=rotation, rtol=1e-6, save_every=0.02)
+    moved = np.hypot(*(np.diff(run[n].values) for n in ("centroid_x", "centroid_y"))) / 0.02
+    assert (moved.min(), moved.max()) == pytest.approx((low, high), rel=0.01)
+    assert run["tension"].max() == pytest.approx(rotation.tension_range[1], abs=5e-3)
+
+
 def test_a_branch_of_orbits_goes_on_from_its_file_to_the_same_bits(tmp_path, rotation):
     file = tmp_path / "orbits.nc"
     options = {"nodes": 256, "spectra": False}

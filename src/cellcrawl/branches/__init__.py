@@ -10,12 +10,9 @@ from cellcrawl.branches.branch import Branch
 from cellcrawl.branches.circle import circle, from_circle, onset_slope, onsets
 from cellcrawl.branches.continuation import ENDS, continue_in
 from cellcrawl.branches.curves import CURVE_ENDS, PointCurve, curve_of
-from cellcrawl.branches.lyapunov import (
-    LABELS,
-    LyapunovExponent,
-    lyapunov_exponent,
-    lyapunov_map,
-)
+from cellcrawl.branches.exponent_map import lyapunov_map, open_lyapunov_map
+from cellcrawl.branches.hopf import from_hopf
+from cellcrawl.branches.lyapunov import LABELS, LyapunovExponent, lyapunov_exponent
 from cellcrawl.branches.orbit import Orbit, orbit
 from cellcrawl.branches.orbit_branch import (
     ORBIT_ENDS,
@@ -58,6 +55,7 @@ __all__ = [
     "continue_orbit",
     "curve_of",
     "from_circle",
+    "from_hopf",
     "from_run",
     "gliding",
     "lyapunov_exponent",
@@ -65,6 +63,7 @@ __all__ = [
     "onset_slope",
     "onsets",
     "open_branch",
+    "open_lyapunov_map",
     "open_orbits",
     "orbit",
     "resume_branch",

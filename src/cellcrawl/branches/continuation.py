@@ -71,9 +71,12 @@ def tangent_of(system: System, root: Root, weight: float, along: np.ndarray) -> 
     return np.asarray(tangent / math.sqrt(float(weights @ (tangent * tangent))))
 
 
-def weight_of(value: float) -> float:
-    """Return the weight of a parameter's square: its own size is a change of 1."""
-    return 1.0 / max(abs(value), 1e-3) ** 2
+def weight_of(value: float, reach: float = 0.0) -> float:
+    """Return the weight of a parameter's square: its own size is a change of 1.
+
+    From 0, or nearly, a tenth of how far it is to go is one.
+    """
+    return 1.0 / max(abs(value), 0.1 * abs(reach), 1e-3) ** 2
 
 
 @checked
@@ -129,19 +132,20 @@ def continue_in(
     value = state.setting.value(name)
     if to == value:
         raise InputError(f"the state has {name} = {value:g} already: give another value to go to")
+    state.setting.replace(name, to)  # refuses now what has no states
     if state.kind == AT_REST:
         raise InputError(
             "this state is the resting circle, which is known at all parameters: begin from a "
             "gliding cell, or from its onset with cellcrawl.branches.from_circle"
         )
     branch = Branch(name, to, [state], spectra=spectra)
-    walker = first_step(state, name, math.copysign(1.0, to - value), min(_FIRST, largest))
+    walker = first_step(state, name, to - value, min(_FIRST, largest))
     return walk(branch, walker, count, largest, output, overwrite)
 
 
-def first_step(state: SteadyState, name: str, sign: float, step: float) -> Walker:
-    """Return a walker at a state that sets out to larger (1) or smaller (-1) values."""
-    weight = weight_of(state.setting.value(name))
+def first_step(state: SteadyState, name: str, reach: float, step: float) -> Walker:
+    """Return a walker at a state that sets out to larger or smaller values, as reach says."""
+    weight, sign = weight_of(state.setting.value(name), reach), math.copysign(1.0, reach)
     system, phi = state.system, state.phi
     reference = system.unpack(state.unknowns)[0]
     jac = _jacobian(state)
@@ -339,7 +343,7 @@ def _at_value(walker: Walker, value: float) -> SteadyState | None:
     try:
         setting = state.setting.replace(walker.name, value)
         root = system.solve(setting, guess, state.phi)
-    except NotFound:
+    except (NotFound, InputError):  # at the end of a range there may be no states
         return None
     found = SteadyState.of(setting, system, root)
     return None if found.kind == AT_REST else found

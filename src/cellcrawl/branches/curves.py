@@ -8,7 +8,7 @@ numbers, and the curve is where it vanishes. One method serves for all kinds of 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -154,7 +154,7 @@ def curve_of(
     box = _box(setting, names, within)
     most = whole_number("most_points", most_points, 2, 10_000)
     largest = real_number("largest_step", largest_step, 1e-3, 0.5)
-    tracer = _Tracer(point, names, box, largest)
+    tracer = _Tracer(point, names, box, within or {}, largest)
     curve = PointCurve(point.kind, point.symmetry, names)
     sides, statuses = [], []
     for sign in (-1.0, 1.0):
@@ -200,11 +200,17 @@ class _Tracer:
         point: SpecialPoint,
         names: tuple[str, str],
         box: list[tuple[float, float]],
+        narrowed: Container[str],
         largest: float,
     ) -> None:
         self.point, self.names, self.box, self.largest = point, names, box, largest
         setting = point.state.setting
-        self.weights = np.array([weight_of(setting.value(name)) for name in names])
+        self.weights = np.array(
+            [
+                weight_of(setting.value(name), high - low if name in narrowed else 0.0)
+                for name, (low, high) in zip(names, box, strict=True)
+            ]
+        )
 
     def trace(self, sign: float, most: int) -> tuple[list[SpecialPoint], str]:
         """Return the points to one side, the first among them, and how the curve ended."""
@@ -238,7 +244,7 @@ class _Tracer:
                     break
                 step *= 0.4
             if after is None:
-                return found, "no convergence"
+                return found, "border" if self._at_edge(here.state.setting) else "no convergence"
             if after.state.kind == AT_REST or after.state.speed < 0.2 * here.state.speed:
                 return found, "circle"
             towards = ahead @ plane
@@ -268,6 +274,10 @@ class _Tracer:
         return any(
             not low <= value <= high for value, (low, high) in zip(values, self.box, strict=True)
         )
+
+    def _at_edge(self, setting: Setting) -> bool:
+        values = [setting.value(name) for name in self.names]
+        return any(value in edges for value, edges in zip(values, self.box, strict=True))
 
     def _near_start(self, at: _At) -> bool:
         first, here = self.point.state.setting, at.state.setting
@@ -368,10 +378,12 @@ class _Tracer:
     def _slope(self, at: _At, plane: np.ndarray) -> np.ndarray:
         """Return the derivative of the growth rate's real part on the plane, shape (2,)."""
         slopes = []
-        for k in range(2):
-            place = np.zeros(2)
-            place[k] = _DIFFERENCE
-            slopes.append((self._on_surface(at, plane, place).test - at.test) / _DIFFERENCE)
+        for place in np.eye(2) * _DIFFERENCE:
+            try:
+                away = self._on_surface(at, plane, place).test - at.test
+            except NotFound:  # a parameter at its end
+                away = at.test - self._on_surface(at, plane, -place).test
+            slopes.append(away / _DIFFERENCE)
         return np.array(slopes)
 
     def _corrected(

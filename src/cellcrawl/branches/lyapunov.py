@@ -10,14 +10,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from concurrent.futures import Executor
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import xarray as xr
 
 from cellcrawl.arguments import checked
+from cellcrawl.branches.circle import circle
 from cellcrawl.branches.flow import Flow
 from cellcrawl.branches.setting import Setting
 from cellcrawl.branches.shooting import scaled, unscaled
@@ -30,7 +29,10 @@ from cellcrawl.parameters import Parameters
 from cellcrawl.starts import RandomPerturbation
 from cellcrawl.starts.base import CellState, Start
 from cellcrawl.threads import on_one_thread
-from cellcrawl.validation import real_number
+from cellcrawl.validation import real_number, whole_number
+
+if TYPE_CHECKING:
+    from cellcrawl.branches.state import SteadyState
 
 NODES: Final = (192, 256, 384, 512)
 _LOOKS = 15
@@ -45,10 +47,13 @@ _STILL = 1e-6
 _COUNTED, _COUNTED_HELD = 0.8, 0.3  # part of the time that counts, the last
 _BATCHES = 8
 _T95 = 2.36  # Student's factor for so many batches
+_T95_OF: Final = {2: 12.7, 3: 4.3, 4: 3.18, 5: 2.78, 6: 2.57, 7: 2.45, 8: 2.36, 9: 2.31, 10: 2.26}
 _ROUND = 1e-3  # spread of the bound fraction along a round cell's edge
 _CLEAR = 0.003  # rate below which growth is not told from none
 _WILD = 0.02  # rate at which a while counts as irregular
 _WHILE = 40.0
+_LEAST, _EVERY = 240, 120  # pauses before a first and another look whether small changes decay
+_SURE = 0.01  # rate of decay that ends an early measurement
 ZEROS: Final = ("time", "direction", "place", "first node")
 LABELS: Final = {
     "steady glide": "keeps its shape and goes straight",
@@ -103,6 +108,8 @@ def lyapunov_exponent(
     settle: float = 60.0,
     laws: Any = None,
     nodes: int | None = None,
+    early: bool = False,
+    runs: int = 1,
 ) -> LyapunovExponent:
     """Return the largest Lyapunov exponent of a cell, the known zeros taken out.
 
@@ -119,6 +126,14 @@ def lyapunov_exponent(
         Time that a cell is given first, 0 to 1e6.
     nodes : int, optional
         Even nodes along the edge, a multiple of 8 from 64; 192 to 512 by the shape unless given.
+    early : bool
+        Stop, from a time of 120 on, once small changes decay beyond doubt: at more than 0.01 in the
+        second half, error included. A stable steady state has its leading growth rate, with no
+        error and no time. Growth is measured to the end: it may be of a while only.
+    runs : int
+        Take the mean over random starts of seeds 1 to this, 1 to 1000, and the error from how far
+        they lie apart. An intermittent cell keeps to one way of moving for long: stretches of one
+        run are then too much alike, and the error they give is too small.
 
     Raises
     ------
@@ -137,6 +152,19 @@ def lyapunov_exponent(
     from cellcrawl.branches.state import SteadyState
 
     nodes = nodes_or_none(nodes)
+    count = whole_number("runs", runs, 1, 1000)
+    if count > 1:
+        if start is not None:
+            raise InputError("runs = 2 and more have random starts of their own: leave out start")
+        return _together(
+            [
+                lyapunov_exponent(
+                    parameters, start=RandomPerturbation(seed=seed), t_end=t_end, settle=settle,
+                    laws=laws, nodes=nodes, early=early,
+                )
+                for seed in range(1, count + 1)
+            ]
+        )  # fmt: skip
     try:
         if isinstance(start, Orbit | SteadyState):
             setting = start.setting
@@ -145,11 +173,31 @@ def lyapunov_exponent(
             cell = start.state(parameters, 1024)
             held = isinstance(start, SteadyState) and setting.parameters == start.parameters
         else:
-            setting, cell, held = _settled(parameters, start, settle, laws)
+            setting, cell, state = _settled(parameters, start, settle, laws)
+            held = state is not None
+            if state is not None and early:
+                return _of_state(state)
         flow, shape = _resolved(setting, cell, nodes)
-        return _measured(flow, shape, t_end, held)
+        return _measured(flow, shape, t_end, held, early)
     except NotFound:
         return LyapunovExponent(math.nan, math.nan, "torn", 0.0, np.zeros(0))
+
+
+def _together(found: Sequence[LyapunovExponent]) -> LyapunovExponent:
+    """Return the mean of runs with the larger of its errors, by the spread and by the runs' own."""
+    values = np.array([one.value for one in found])
+    count = values.size
+    spread = _T95_OF.get(count, 2.0) * float(np.std(values, ddof=1)) / math.sqrt(count)
+    own = math.sqrt(sum(one.error**2 for one in found)) / count
+    value, error = float(values.mean()), max(spread, own)
+    labels = [one.label for one in found]
+    label = max(LABELS, key=labels.count)
+    if value > max(error, _CLEAR):
+        label = "chaotic"
+    elif label == "chaotic":
+        label = "undecided"
+    course = np.concatenate([one.course for one in found])
+    return LyapunovExponent(value, error, label, sum(one.time for one in found), course)
 
 
 def _resolved(setting: Setting, cell: CellState, nodes: int | None) -> tuple[Flow, np.ndarray]:
@@ -171,8 +219,8 @@ def _resolved(setting: Setting, cell: CellState, nodes: int | None) -> tuple[Flo
 
 def _settled(
     parameters: Parameters, start: Start | None, settle: float, laws: Any
-) -> tuple[Setting, CellState, bool]:
-    """Return a cell after a while, or the steady state that it comes to, and whether it is one."""
+) -> tuple[Setting, CellState, SteadyState | None]:
+    """Return a cell after a while, or the stable steady state that it comes to."""
     from cellcrawl.simulation import simulate
 
     first = RandomPerturbation(seed=1) if start is None else start
@@ -188,16 +236,29 @@ def _settled(
     flow = Flow(setting, 512)
     shape = flow.from_cell(cell)
     if flow.norm(flow.pace(shape)) > _RELAXES:
-        return setting, cell, False
+        return setting, cell, None
     try:  # a shape that still relaxes has its slowest change along its pace
-        exact = polished(setting, theta, n, length, sigma).state(parameters, 1024)
+        state = polished(setting, theta, n, length, sigma)
     except InputError:
-        return setting, cell, False
-    near = flow.norm(flow.from_cell(exact) - shape) < _NEAR
-    return setting, exact if near else cell, near
+        return setting, cell, None
+    if np.ptp(state.fields.n) < _ROUND and setting.rest_area == math.pi:
+        state = circle(parameters, laws=setting.laws)
+    exact = state.state(parameters, 1024)
+    if flow.norm(flow.from_cell(exact) - shape) > _NEAR or not state.stable:
+        return setting, cell, None  # near an unstable state a cell is only on its way
+    return setting, exact, state
 
 
-def _measured(flow: Flow, shape: np.ndarray, t_end: float, held: bool) -> LyapunovExponent:
+def _of_state(state: SteadyState) -> LyapunovExponent:
+    from cellcrawl.branches.state import AT_REST, TURNING
+
+    label = {AT_REST: "at rest", TURNING: "steady spin"}.get(state.kind, "steady glide")
+    return LyapunovExponent(float(state.eigenvalues[0].real), 0.0, label, 0.0, np.zeros(0))
+
+
+def _measured(
+    flow: Flow, shape: np.ndarray, t_end: float, held: bool, early: bool
+) -> LyapunovExponent:
     fastest = flow.stiffness(shape)
     rng = np.random.default_rng(0)
     count = math.ceil(t_end / _PAUSE)
@@ -205,7 +266,8 @@ def _measured(flow: Flow, shape: np.ndarray, t_end: float, held: bool) -> Lyapun
     pace = scaled(flow.pace(shape))
     change = flow.canonical(shape + 1e-3 * unscaled(_smooth(flow.nodes, rng))) - shape
     vector = _across(scaled(change), pace, held)
-    turned, paces, spreads, tensions = 0.0, [], [], []
+    turned, paces, spreads = 0.0, [], []
+    part = _COUNTED_HELD if held else _COUNTED
     home = flow.after_stabilised(shape, _PAUSE, _STEP, fastest)
     for k in range(count):
         there = flow.after_stabilised(shape + _APART * unscaled(vector), _PAUSE, _STEP, fastest)
@@ -223,9 +285,13 @@ def _measured(flow: Flow, shape: np.ndarray, t_end: float, held: bool) -> Lyapun
         if not held:
             paces.append(float(np.linalg.norm(pace)))
             spreads.append(float(np.ptp(shape[flow.nodes : 2 * flow.nodes])))
-            tensions.append(float(shape[-1]))
             home = flow.after_stabilised(shape, _PAUSE, _STEP, fastest)
-    counted = course[count - int((_COUNTED_HELD if held else _COUNTED) * count) :]
+            done = k + 1
+            looks = early and done >= _LEAST and done % _EVERY == 0
+            if looks and _decays(course[done // 2 : done]):
+                course, count, part = course[:done], done, 0.5
+                break
+    counted = course[count - int(part * count) :]
     value, error = _batched(counted)
     if held:
         spin = abs(home.turn) / _PAUSE
@@ -256,6 +322,11 @@ def _across(vector: np.ndarray, pace: np.ndarray, held: bool, *, unit: bool = Tr
     if not held and square > _STILL**2:
         vector = vector - (vector @ pace) / square * pace
     return vector / float(np.linalg.norm(vector)) if unit else vector
+
+
+def _decays(course: np.ndarray) -> bool:
+    value, error = _batched(course)
+    return value + error < -_SURE
 
 
 def _batched(course: np.ndarray) -> tuple[float, float]:
@@ -300,58 +371,3 @@ def _label(
     if value < -clear:
         return "periodic"
     return "quasi-periodic" if clear < 3.0 * _CLEAR else "undecided"
-
-
-def _of_one(task: tuple[dict[str, Any], int, float, Any]) -> tuple[float, float, str]:
-    values, seed, t_end, laws = task
-    found = lyapunov_exponent(
-        Parameters.from_dict(values), start=RandomPerturbation(seed=seed), t_end=t_end, laws=laws
-    )
-    return found.value, found.error, found.label
-
-
-@checked
-def lyapunov_map(
-    parameters: Parameters,
-    *,
-    r_on: Any,
-    zeta_1: Any,
-    seed: int = 1,
-    t_end: float = 1000.0,
-    laws: Any = None,
-    executor: Executor | None = None,
-) -> xr.Dataset:
-    """Return exponents and labels over a grid of two parameters.
-
-    Parameters
-    ----------
-    parameters : Parameters
-        The other parameters.
-    r_on, zeta_1 : sequences of float
-        Values of the grid.
-    executor : Executor, optional
-        Any of `concurrent.futures`, as for `sweep`; one cell after the other here unless given.
-
-    Returns
-    -------
-    Dataset
-        ``exponent``, ``error`` and ``label`` over (zeta_1, r_on).
-    """
-    across, up = (np.atleast_1d(np.asarray(v, dtype=float)) for v in (r_on, zeta_1))
-    tasks = [
-        (parameters.replace(r_on=float(a), zeta_1=float(b)).to_dict(), seed, t_end, laws)
-        for b in up
-        for a in across
-    ]
-    found = list((executor.map if executor is not None else map)(_of_one, tasks))
-    shape = (up.size, across.size)
-    dims = ("zeta_1", "r_on")
-    return xr.Dataset(
-        {
-            "exponent": (dims, np.array([one[0] for one in found]).reshape(shape)),
-            "error": (dims, np.array([one[1] for one in found]).reshape(shape)),
-            "label": (dims, np.array([one[2] for one in found]).reshape(shape)),
-        },
-        coords={"r_on": across, "zeta_1": up},
-        attrs={"t_end": t_end, "seed": seed, "zeros": ", ".join(ZEROS)},
-    )

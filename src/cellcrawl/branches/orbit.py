@@ -43,11 +43,12 @@ _NEAR, _NEAREST = 0.08, 0.3  # of the largest distance on the way
 _RESTS = 1e-3
 _FAR = 0.3
 _ROUND = 1e-5  # spread of the bound fraction along the edge
-_SAMPLES: Final = 96
+_SAMPLES: Final = 256
 _FINER = 64
 _STRAIGHT = 1e-6  # rad a period
 _BOTH_WAYS = 0.1
 _MARGINAL = 1e-5
+_MOMENT = 1e-5  # time over which rates of a moving cell are taken
 
 
 class _Flown(NamedTuple):
@@ -58,6 +59,8 @@ class _Flown(NamedTuple):
     """Of the front over a return, in rad."""
     both_ways: float
     """Share of its turning that goes against the rest."""
+    paces: np.ndarray
+    """Speed of the centroid and rate of turning of the front, shape (states, 2)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +164,8 @@ class Orbit:
         parts = np.diff(unwrapped)
         ways = float(np.sum(parts[parts > 0.0])), float(-np.sum(parts[parts < 0.0]))
         share = min(ways) / max(sum(ways), 1e-300)
-        return _Flown(states, float(unwrapped[-1] - unwrapped[0]), share)
+        paces = np.array([_pace(flow, state) for state in states])
+        return _Flown(states, float(unwrapped[-1] - unwrapped[0]), share, paces)
 
     @cached_property
     def _cells(self) -> list[CellState]:
@@ -191,6 +195,20 @@ class Orbit:
         if abs(self.turn) < _STRAIGHT:
             return BREATHING
         return LOPSIDED if self._flown.both_ways > _BOTH_WAYS else ROTATION
+
+    @property
+    def speed_range(self) -> tuple[float, float]:
+        """Least and largest speed of the centroid."""
+        return _extremes(self._flown.paces[:, 0])
+
+    @property
+    def turning_rate_range(self) -> tuple[float, float]:
+        """Least and largest rate at which the front turns, in rad, over a whole `cycle`."""
+        low, high = _extremes(self._flown.paces[:, 1])
+        if self.reflected:
+            most = max(-low, high)
+            return -most, most
+        return low, high
 
     @property
     def tension_range(self) -> tuple[float, float]:
@@ -297,6 +315,17 @@ class Orbit:
 
 
 _multipliers = on_one_thread(multipliers)
+
+
+def _pace(flow: Flow, state: np.ndarray) -> tuple[float, float]:
+    """Return the speed of a cell's centroid and the rate at which its front turns."""
+    rates, nodes = flow.rates(state), flow.nodes
+    ends = [state + sign * _MOMENT * rates for sign in (1.0, -1.0)]
+    places = [flow.cell(end, nodes).curve.centroid for end in ends]
+    turns = [flow.shape_of(end).turn for end in ends]
+    apart = float(np.hypot(*(places[0] - places[1])))
+    turned = (turns[0] - turns[1] + math.pi) % (2.0 * math.pi) - math.pi
+    return apart / (2.0 * _MOMENT), turned / (2.0 * _MOMENT)
 
 
 def _extremes(values: np.ndarray) -> tuple[float, float]:

@@ -136,7 +136,8 @@ class OrbitBranch:
             low, high = one.tension_range
             row: dict[str, Any] = {
                 self.name: one.setting.value(self.name), "kind": one.kind, "period": one.period,
-                "turn": one.turn, "speed": one.speed, "tension_least": low,
+                "turn": one.turn, "speed": one.speed, "speed_least": one.speed_range[0],
+                "speed_largest": one.speed_range[1], "tension_least": low,
                 "tension_largest": high, "circularity": one.circularity, "nodes": one.nodes,
             }  # fmt: skip
             if self.spectra:
@@ -226,6 +227,7 @@ def continue_orbit(
     value = start.setting.value(name)
     if to == value:
         raise InputError(f"the orbit has {name} = {value:g} already: give another value to go to")
+    start.setting.replace(name, to)  # refuses now what has no orbits
     branch = OrbitBranch(name, to, [start], spectra=spectra)
     branch.nodes = nodes_or_none(nodes)
     change, longer = on_one_thread(answer)(
@@ -333,27 +335,14 @@ def _advance(
     before: Orbit, walker: OrbitWalker, name: str, bounds: tuple[float, float], nodes: int | None
 ) -> Orbit | None:
     """Return the next orbit a step ahead, or nothing if even the smallest fails."""
-    shape, weights = coarse_shape(before), _weights(before, name)
     value = before.setting.value(name)
     while walker.step >= _SMALLEST:
         ahead = walker.step * walker.tangent
-        target = min(max(value + float(ahead[-1]), bounds[0]), bounds[1])
-        border = Border(
-            name, walker.tangent[:-2], weights[0] * float(walker.tangent[-2]),
-            float(walker.tangent[-1]), weights[1],
-        )  # fmt: skip
-        try:
-            setting = before.setting.replace(name, target)
-            flow = Flow(setting, COARSE)
-            guess = flow.canonical(shape + unscaled(ahead[:-2]))
-            found = close(
-                setting, before.reflected, guess, before.period + float(ahead[-2]),
-                nodes=nodes, border=border,
-            )  # fmt: skip
-        except (NotFound, np.linalg.LinAlgError, InputError):
+        ahead[-1] = min(max(value + float(ahead[-1]), bounds[0]), bounds[1]) - value
+        after = _ahead(before, ahead, walker.tangent, name, nodes)
+        if after is None:
             walker.step *= 0.4
             continue
-        after = Orbit.of(setting.replace(name, found.parameter), before.reflected, found)
         change = _apart(before, after, name)
         far = float(np.linalg.norm(change[:-2]))
         if far > _TOO_FAR and walker.step > 2.0 * _SMALLEST:
@@ -362,6 +351,27 @@ def _advance(
         walker.step *= 1.6 if far < 0.5 * _TOO_FAR else 1.0
         return after
     return None
+
+
+def _ahead(
+    before: Orbit, change: np.ndarray, tangent: np.ndarray, name: str, nodes: int | None
+) -> Orbit | None:
+    """Return the orbit a change away, that and the parameter across a tangent: also at folds."""
+    weights = _weights(before, name)
+    border = Border(
+        name, tangent[:-2], weights[0] * float(tangent[-2]), float(tangent[-1]), weights[1]
+    )
+    try:
+        value = before.setting.value(name) + float(change[-1])
+        setting = before.setting.replace(name, value)
+        guess = Flow(setting, COARSE).canonical(coarse_shape(before) + unscaled(change[:-2]))
+        found = close(
+            setting, before.reflected, guess, before.period + float(change[-2]),
+            nodes=nodes, border=border,
+        )  # fmt: skip
+    except (NotFound, np.linalg.LinAlgError, InputError):
+        return None
+    return Orbit.of(setting.replace(name, found.parameter), before.reflected, found)
 
 
 def _at_value(
@@ -376,11 +386,11 @@ def _at_value(
 def _near(
     before: Orbit, change: np.ndarray, longer: float, name: str, value: float, nodes: int | None
 ) -> Orbit | None:
-    setting = before.setting.replace(name, value)
     try:
+        setting = before.setting.replace(name, value)
         guess = Flow(setting, COARSE).canonical(coarse_shape(before) + unscaled(change))
         found = close(setting, before.reflected, guess, before.period + longer, nodes=nodes)
-    except NotFound:
+    except (NotFound, InputError):  # at the end of a range there may be no orbits
         return None
     return Orbit.of(setting, before.reflected, found)
 
@@ -438,13 +448,11 @@ def _locate(
     nodes: int | None,
 ) -> OrbitPoint | None:
     change = _apart(before, after, name)
-    value = before.setting.value(name)
     a, b, (fa, fb) = 0.0, 1.0, ends
     here, part = before, 0.0
     for _ in range(_TRIES):
         part = (a * fb - b * fa) / (fb - fa)
-        ahead = part * change
-        made = _near(before, ahead[:-2], float(ahead[-2]), name, value + float(ahead[-1]), nodes)
+        made = _ahead(before, part * change, change, name, nodes)
         if made is None:
             return None
         here = made

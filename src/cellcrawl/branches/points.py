@@ -134,7 +134,7 @@ class Between:
     def __init__(self, name: str, weight: float, first: SteadyState, last: SteadyState) -> None:
         from cellcrawl.branches.resolution import resampled
 
-        self.name, self.weight = name, weight
+        self.name, self.weight, self.first = name, weight, first
         system, y = last.system, last.unknowns
         other = first.unknowns
         if first.mesh != last.mesh:
@@ -170,7 +170,7 @@ class Between:
         self.phi = root.phi
         self.known.append((part, root.unknowns, root.parameter))
         setting = self.setting.replace(self.name, root.parameter)
-        return SteadyState.of(setting, self.system, root)
+        return self.first.of(setting, self.system, root)
 
     def _guess(self, part: float) -> tuple[np.ndarray, float]:
         """Interpolate between up to four states known nearest."""

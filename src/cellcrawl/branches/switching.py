@@ -56,8 +56,8 @@ def branch_off(point: SpecialPoint, *, amplitude: float = 0.03) -> SteadyState:
         )  # fmt: skip
     if point.kind == HOPF:
         raise InputError(
-            "oscillating cells, not steady ones, leave at a Hopf point: simulate from "
-            "point.state.perturbed(...) to see one"
+            "oscillating cells, not steady ones, leave at a Hopf point: "
+            "cellcrawl.branches.from_hopf finds them"
         )
     if point.kind not in (PITCHFORK, BRANCHING) or point.vector is None:
         raise InputError(f"no other branch leaves at this {point.kind}")

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 _USUAL = Parameters(zeta_1=560.0)
 _COLUMNS = ("kind", "symmetry", "r_on", "zeta_1", "frequency", "speed", "turning_rate", "tension")
 _GLIDING, _TURNING = "gliding", "turning"
-_PICTURES = (("speed", "branches"), ("turning_rate", "turning-rate"), ("tension", "tension"))
 _SETTLED = 150.0  # time after which a run is on its orbit
 _NODES, _MOST = 256, 12
 
@@ -45,7 +44,8 @@ _NODES, _MOST = 256, 12
 @click.option(
     "--orbits",
     metavar="R1,R2,...",
-    help="Follow zigzags and rotations too, from runs at these r_on, both ways.",
+    help="Follow zigzags and rotations too, from runs at these r_on, both ways; with --turning "
+    "also the wobbles that turning cells begin.",
 )
 @click.option("--curves", is_flag=True, help="Follow each special point over r_on and zeta_1 too.")
 @click.option(
@@ -103,6 +103,8 @@ def branches(
                 points += branch.special_points
                 _tell(branch)
             cycles += _orbits(one, places, output, overwrite)
+            if places:
+                cycles += _wobbles(found, output, overwrite)
         say(f"special points  {len(points)}")
         _write(points, output / "special_points.csv")
         lines = _curves(points, cell, to) if curves else []
@@ -110,9 +112,7 @@ def branches(
         say("stopped; what was followed is in the files")
         return CANCELLED
     with look.used():
-        for quantity, name in _PICTURES:
-            axes = plot.branch([*made, *cycles], quantity)
-            save_picture(axes.figure, output / f"{name}.png", dpi)
+        save_picture(plot.branch_panels([*made, *cycles]), output / "branches.png", dpi)
         if lines:
             save_picture(plot.boundaries(lines).figure, output / "curves.png", dpi)
     ended = [one.status for one in made] + [one.status for one in cycles]
@@ -177,6 +177,32 @@ def _orbits(
             for point in branch.special_points:
                 say(f"  r_on {point.value:12.5f}  {point.kind}")
             made.append(branch)
+    return made
+
+
+def _wobbles(found: list[Branch], output: Path, overwrite: bool) -> list[OrbitBranch]:
+    """Follow the small orbits that leave turning cells at their Hopf points."""
+    from cellcrawl.branches import from_hopf
+
+    made = []
+    for point in [
+        p for branch in found if branch[0].kind == _TURNING for p in branch.points("Hopf")
+    ]:
+        zeta_1 = point.parameters.zeta_1
+        try:
+            first = from_hopf(point, nodes=_NODES)
+        except InputError as error:
+            say(f"r_on = {point.value:g}: {error}")
+            continue
+        born = first.parameters.r_on
+        branch = first.continue_in(
+            "r_on", born + 10.0 * (born - point.value), nodes=_NODES, most_orbits=_MOST,
+            output=output / f"wobble-{zeta_1:g}-{point.value:.4g}.nc", overwrite=overwrite,
+        )  # fmt: skip
+        say(f"wobble of turning cells: {len(branch)} orbits; {branch.message}")
+        for special in branch.special_points:
+            say(f"  r_on {special.value:12.5f}  {special.kind}")
+        made.append(branch)
     return made
 
 

@@ -10,11 +10,12 @@ size, colour map and any other of them for a while. A field has the same colours
 and movie, and units are those of the data.
 """
 
-from cellcrawl.plot.branches import boundaries, branch
+from cellcrawl.plot.branches import boundaries, branch, branch_panels
 from cellcrawl.plot.cell import cell, snapshots
 from cellcrawl.plot.cycle import cycle
 from cellcrawl.plot.diagram import diagram, measure_map
 from cellcrawl.plot.dispersion import dispersion
+from cellcrawl.plot.exponents import lyapunov_map
 from cellcrawl.plot.flat_edge import flat_edge
 from cellcrawl.plot.growth import growth
 from cellcrawl.plot.kymograph import kymograph, kymographs
@@ -30,6 +31,7 @@ from cellcrawl.plot.two_edges import regimes, two_edges
 __all__ = [
     "boundaries",
     "branch",
+    "branch_panels",
     "cell",
     "compare_tracks",
     "cycle",
@@ -40,6 +42,7 @@ __all__ = [
     "house_style",
     "kymograph",
     "kymographs",
+    "lyapunov_map",
     "measure_map",
     "outlines",
     "path",

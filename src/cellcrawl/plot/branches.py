@@ -7,6 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from cellcrawl.arguments import checked
 from cellcrawl.branches import Branch, OrbitBranch, PointCurve
@@ -16,7 +17,7 @@ from cellcrawl.laws.law import PAPER
 from cellcrawl.linear import marginal_curves
 from cellcrawl.parameters import DESCRIPTIONS
 from cellcrawl.plot.mode_symbols import MODE_SYMBOLS
-from cellcrawl.plot.style import COLUMN, INK, axes_or_new
+from cellcrawl.plot.style import COLUMN, INK, axes_or_new, paper_figure
 from cellcrawl.plot.symbols import PARAMETER_NAMES, parameter_label
 from cellcrawl.validation import one_of
 
@@ -38,7 +39,6 @@ _POINTS: Final = {
     "period doubling": ("P", "period doubling"),
     "torus": ("*", "torus point"),
 }
-_EXTREMES: Final = {"tension": "tension_range", "circularity": "circularity_range"}
 _OF_ORBITS: Final = ("speed", "turning_rate", "tension", "circularity")
 _GLIDING = MODE_SYMBOLS["gliding"].colour
 _TURNING = MODE_SYMBOLS["rotational"].colour
@@ -63,8 +63,7 @@ def branch(
 ) -> Axes:
     """Draw a measure of steady cells and orbits along branches: solid where stable, else dotted.
 
-    Of orbits the tension and the circularity are drawn twice, at their least and their largest;
-    speed and turning rate are means over a period.
+    Of orbits the least and the largest over a period are drawn.
 
     Parameters
     ----------
@@ -106,6 +105,50 @@ def branch(
     return axes
 
 
+@checked
+def branch_panels(
+    branches: Branch | OrbitBranch | Sequence[Branch | OrbitBranch],
+    *,
+    title: str = "",
+) -> Figure:
+    """Draw speed, turning rate and tension along branches, one above the other.
+
+    Parameters
+    ----------
+    branches : Branch, OrbitBranch or sequence of them
+        Followed in the same parameter; drawn as in `branch`.
+    title : str
+        Above the panels.
+
+    Returns
+    -------
+    Figure
+
+    Raises
+    ------
+    InputError
+        For branches in different parameters.
+    """
+    keys: dict[str, Any] = {}
+    with paper_figure(COLUMN, 2.0 * COLUMN, shown=True) as figure:
+        panels = figure.subplots(3, 1, sharex=True)
+        for panel, quantity in zip(panels, ("speed", "turning_rate", "tension"), strict=True):
+            branch(branches, quantity, ax=panel)
+            made = panel.get_legend()
+            if made is not None:
+                names = [text.get_text() for text in made.get_texts()]
+                keys.update(zip(names, made.legend_handles, strict=True))
+                made.remove()
+            panel.label_outer()
+        if title:
+            panels[0].set_title(title, loc="left")
+        if keys:
+            figure.legend(
+                list(keys.values()), list(keys), loc="outside lower center", ncols=3, frameon=False
+            )
+    return figure
+
+
 def _draw_states(axes: Axes, one: Branch, quantity: str, seen: dict[str, Any]) -> None:
     values = np.array([abs(getattr(state, quantity)) for state in one])
     colour = _TURNING if one[0].kind == TURNING else _GLIDING
@@ -119,16 +162,19 @@ def _draw_states(axes: Axes, one: Branch, quantity: str, seen: dict[str, Any]) -
 def _draw_orbits(axes: Axes, one: OrbitBranch, quantity: str, seen: dict[str, Any]) -> None:
     colour = MODE_SYMBOLS["zigzag"].colour if one[0].reflected else ORBIT
     stable = np.array([one.spectra and orbit.stable for orbit in one])
-    values = np.array([np.abs(_of_orbit(orbit, quantity)) for orbit in one])
+    values = np.array([_of_orbit(orbit, quantity) for orbit in one])
     for column in values.T:
         _draw_line(axes, one.values, column, stable, colour)
     for point in one.special_points:
-        for height in np.abs(_of_orbit(point.orbit, quantity)):
-            _mark(axes, point.kind, point.value, float(height), seen)
+        for height in _of_orbit(point.orbit, quantity):
+            _mark(axes, point.kind, point.value, height, seen)
 
 
-def _of_orbit(orbit: Any, quantity: str) -> np.ndarray:
-    return np.atleast_1d(np.array(getattr(orbit, _EXTREMES.get(quantity, quantity)), dtype=float))
+def _of_orbit(orbit: Any, quantity: str) -> tuple[float, float]:
+    """Return the least and the largest; of the two mirror images that which turns to the left."""
+    low, high = getattr(orbit, f"{quantity}_range")
+    mirrored = quantity == "turning_rate" and orbit.turning_rate < 0.0
+    return (-high, -low) if mirrored else (low, high)
 
 
 def _draw_line(

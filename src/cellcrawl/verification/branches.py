@@ -113,6 +113,12 @@ def growth_of_nearby_cells(full: bool) -> Iterator[Result]:
     found = lyapunov_exponent(Parameters(r_on=24.0, zeta_1=540.0), t_end=150.0)
     wanted = math.log(0.506) / 12.9350
     yield near("exponent of the rotation (24, 540)", found.value, wanted, 3e-3)
+    wild = lyapunov_exponent(Parameters(r_on=40.0, zeta_1=520.0), t_end=600.0)
+    yield at_most("0 less the exponent of (40, 520), its error added", wild.error - wild.value, 0.0)
+    if full:
+        found = lyapunov_exponent(Parameters(r_on=44.0, zeta_1=560.0), t_end=2500.0, runs=4)
+        yield near("exponent of the irregular spin (44, 560), four runs", found.value, 0.03, 0.02)
+        yield at_most("0 less that exponent, its error added", found.error - found.value, 0.0)
 
 
 def basins_side_by_side(full: bool) -> Iterator[Result]:
