@@ -21,7 +21,7 @@ from matplotlib.figure import Figure
 import cellcrawl as cc
 from cellcrawl.bench import exact, machine
 from cellcrawl.bench.cases import check_start
-from cellcrawl.curve import fourier
+from cellcrawl.numerics import fourier
 from cellcrawl.plot.style import GUIDE, PAGE, paper_figure
 
 CELL = (26.0, 600.0)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import subprocess
 import sys
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -40,3 +42,18 @@ print(*missing, *(name for name in {names!r} if pydoc.locate("cellcrawl." + name
     assert done.stdout.split() == []
     stray = {"Any", "annotations", "importlib", "TYPE_CHECKING", "locks", "arguments"}
     assert not stray & set(dir(cc))
+
+
+def test_no_part_of_the_package_needs_one_that_needs_it():
+    root = Path(cc.__file__).parent
+    needs: dict[str, set[str]] = {}
+    for file in root.rglob("*.py"):
+        part = file.relative_to(root).parts[0].removesuffix(".py")
+        for node in ast.parse(file.read_text("utf-8")).body:  # what is imported at once
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("cellcrawl"):
+                homes = node.module.split(".")[1:2] or [alias.name for alias in node.names]
+                needs.setdefault(part, set()).update(home for home in homes if home != part)
+    order = list(TopologicalSorter(needs).static_order())  # raises where there is a circle
+    assert order.index("numerics") < order.index("laws") < order.index("solvers")
+    assert order.index("data") < order.index("observables") < order.index("modes")
+    assert order.index("solvers") < order.index("simulation") < order.index("sweeps")

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from cellcrawl.linear.bracketing import all_roots, bracketed_roots
 from cellcrawl.linear.level_curves import level_curves
+from cellcrawl.numerics.bracketing import all_roots, bracketed_roots
 
 GRID = np.linspace(-2.0, 2.0, 41)
 

@@ -10,7 +10,7 @@ import pytest
 
 import cellcrawl as cc
 from cellcrawl.command_line.main import run as command
-from cellcrawl.curve import fourier
+from cellcrawl.numerics import fourier
 from cellcrawl.simulation.tension_law import TensionLaw
 from cellcrawl.solvers import SOLVERS, Instant
 from cellcrawl.solvers.conditions import Conditions

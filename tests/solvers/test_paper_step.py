@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellcrawl.solvers.cyclic import solve_cyclic_tridiagonal
+from cellcrawl.numerics.cyclic import solve_cyclic_tridiagonal
 from cellcrawl.solvers.paper.step import crank_nicolson
 from cellcrawl.solvers.paper.tangent_angle import (
     centroid,

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from cellcrawl.bench.cases import check_start
-from cellcrawl.curve import fourier
+from cellcrawl.numerics import fourier
 from cellcrawl.parameters import Parameters
 from cellcrawl.simulation import simulate
 from cellcrawl.starts import RandomPerturbation

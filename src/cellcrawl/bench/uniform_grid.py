@@ -14,8 +14,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from cellcrawl._compile import kernel
-from cellcrawl.curve import fourier
+from cellcrawl.laws.force_balance import SOLVED, halley_step, solve_bonds
 from cellcrawl.laws.functions import (
     binding,
     nearly_renewed_rate,
@@ -24,7 +23,8 @@ from cellcrawl.laws.functions import (
     velocity,
 )
 from cellcrawl.laws.rest import rest_state
-from cellcrawl.physics.force_balance import SOLVED, halley_step, solve_bonds
+from cellcrawl.numerics import fourier
+from cellcrawl.numerics.kernels import kernel
 from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.starts import CellState
 

@@ -24,7 +24,8 @@ from cellcrawl.branches.stepping import (
     chebyshev,
 )
 from cellcrawl.branches.system import NotFound
-from cellcrawl.curve import Curve, fourier
+from cellcrawl.curve import Curve
+from cellcrawl.numerics import fourier
 from cellcrawl.solvers.adaptive import state as layout
 from cellcrawl.solvers.adaptive.entries import AREA, LENGTH, ORIGIN_X, TENSION
 from cellcrawl.solvers.adaptive.mesh import CHANGE, FINE, FINE_NODE, MESH_ROWS

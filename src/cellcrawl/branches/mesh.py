@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cellcrawl.curve import fourier
+from cellcrawl.numerics import fourier
 
 _NEWTON_STEPS = 60
 _ROUNDING = 1e-14  # an angle's, up to 2 pi: the step after is the last that does something

@@ -22,8 +22,9 @@ from cellcrawl.branches.shooting import (
 )
 from cellcrawl.branches.starting import last_of
 from cellcrawl.branches.system import NotFound
-from cellcrawl.curve import Curve, fourier
+from cellcrawl.curve import Curve
 from cellcrawl.errors import InputError
+from cellcrawl.numerics import fourier
 from cellcrawl.parameters import Parameters
 from cellcrawl.starts.base import CellState
 from cellcrawl.threads import on_one_thread

@@ -11,10 +11,10 @@ import numpy as np
 
 from cellcrawl.errors import InputError, nearest_name
 from cellcrawl.laws import as_law
+from cellcrawl.laws.force_balance import SOLVED, solve_bonds
 from cellcrawl.laws.law import PAPER, Law
 from cellcrawl.laws.rest import RestState, local_values, rest_state
 from cellcrawl.parameters import DESCRIPTIONS, Parameters
-from cellcrawl.physics.force_balance import SOLVED, solve_bonds
 
 
 class OutOfRange(Exception):

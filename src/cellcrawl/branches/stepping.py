@@ -11,8 +11,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel
-from cellcrawl._elementary import cosine, sine
+from cellcrawl.numerics.elementary import cosine, sine
+from cellcrawl.numerics.kernels import kernel
 from cellcrawl.solvers.adaptive.entries import ORIGIN_X, ORIGIN_Y
 from cellcrawl.solvers.adaptive.rates import rates
 from cellcrawl.solvers.adaptive.staggered import (

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from cellcrawl.curve import fourier
 from cellcrawl.curve.crossing import first_crossing
 from cellcrawl.curve.equal_arclength import FEWEST_NODES, MOST_NODES, Curve
 from cellcrawl.errors import InputError
+from cellcrawl.numerics import fourier
 from cellcrawl.validation import real_array, real_number, whole_number
 
 LARGEST = 1e12  # coordinates of an outline

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cellcrawl._compile import kernel, woven_kernel
 from cellcrawl.curve.orientation import orientation
+from cellcrawl.numerics.kernels import kernel, woven_kernel
 
 _RUN = 16
 _NONE = -1

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from cellcrawl.arguments import checked
-from cellcrawl.curve import fourier
 from cellcrawl.errors import InputError
+from cellcrawl.numerics import fourier
 from cellcrawl.validation import real_array, real_number, whole_number
 
 FEWEST_NODES = 16

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcrawl._compile import kernel, woven_kernel
+from cellcrawl.numerics.kernels import kernel, woven_kernel
 
 _FILTER = 3.3306690738754716e-16  # (3 + 16 u) u: above it the rounded determinant has the sign
 _SPLIT = 134217729.0  # 2**27 + 1 splits a double into two halves

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cellcrawl._compile import inlined_kernel
+from cellcrawl.numerics.kernels import inlined_kernel
 
 _SHIFT = 6755399441055744.0  # 1.5 * 2**52: adding it rounds to the nearest integer
 _PER_TURN = 0.15915494309189535

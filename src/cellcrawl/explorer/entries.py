@@ -13,11 +13,11 @@ import numba
 import numpy as np
 from numba.core import types
 
-from cellcrawl._elementary import natural_logarithm
 from cellcrawl.curve.crossing import crossing_edges
 from cellcrawl.laws import SHIPPED, Law
 from cellcrawl.laws.balanced_edge import TRIALS, at_bond_force, force_at_rest, trial_force
 from cellcrawl.laws.law import PAPER
+from cellcrawl.numerics.elementary import natural_logarithm
 from cellcrawl.solvers.adaptive import drive
 from cellcrawl.solvers.adaptive.differences import DIFFERENCES
 from cellcrawl.solvers.adaptive.entries import FIELDS, SCALARS

@@ -10,9 +10,9 @@ from typing import Final
 
 FILE: Final = "solver.sha256"
 _PLACES: Final = (
-    "_elementary.py",
+    "numerics/elementary.py",
     "curve/crossing.py",
-    "curve/fourier.py",
+    "numerics/fourier.py",
     "curve/orientation.py",
     "curve/sines.py",
     "explorer/emit.py",
@@ -31,9 +31,9 @@ _PLACES: Final = (
     "laws/load.py",
     "laws/myosin.py",
     "laws/stiffness.py",
-    "physics/exponential.py",
-    "physics/force_balance.py",
-    "solvers/cyclic.py",
+    "numerics/exponential.py",
+    "laws/force_balance.py",
+    "numerics/cyclic.py",
     "surroundings/base.py",
     "surroundings/discs.py",
     "surroundings/lookup.py",

@@ -6,8 +6,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from cellcrawl._compile import inlined_kernel
 from cellcrawl.laws.functions import balance, binding, off_rate, partials, velocity
+from cellcrawl.numerics.kernels import inlined_kernel
 
 TRIALS: Final = 2400  # forces on a bond at which a change of sign is looked for
 _HALVINGS: Final = 200

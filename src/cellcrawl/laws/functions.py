@@ -21,9 +21,9 @@ from numba.extending import (
     unbox,
 )
 
-from cellcrawl._compile import inlined_kernel
-from cellcrawl._elementary import cosine, hyperbolic_tangent, natural_logarithm, sine
-from cellcrawl.physics.exponential import exponential, growth
+from cellcrawl.numerics.elementary import cosine, hyperbolic_tangent, natural_logarithm, sine
+from cellcrawl.numerics.exponential import exponential, growth
+from cellcrawl.numerics.kernels import inlined_kernel
 
 _OPTIONS: Final[Any] = {
     "error_model": "numpy",

@@ -8,7 +8,7 @@ import numpy as np
 
 from cellcrawl.laws.law import Law
 from cellcrawl.laws.rest import RestState, local_values, rest_state
-from cellcrawl.linear.quadratic import ordered_roots
+from cellcrawl.numerics.quadratic import ordered_roots
 from cellcrawl.parameters import Parameters
 
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cellcrawl.linear.bracketing import bracketed_roots
+from cellcrawl.numerics.bracketing import bracketed_roots
 
 Field = Callable[[np.ndarray, np.ndarray], np.ndarray]
 

@@ -19,7 +19,7 @@ from cellcrawl.linear.characteristic import (
     checked_values,
     checked_wavenumbers,
 )
-from cellcrawl.linear.quadratic import ordered_roots
+from cellcrawl.numerics.quadratic import ordered_roots
 from cellcrawl.parameters import Parameters
 
 

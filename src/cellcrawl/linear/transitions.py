@@ -13,13 +13,13 @@ import numpy as np
 
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
-from cellcrawl.linear.bracketing import all_roots
 from cellcrawl.linear.characteristic import (
     HIGHEST_WAVENUMBER,
     Characteristic,
     characteristic,
     checked_values,
 )
+from cellcrawl.numerics.bracketing import all_roots
 from cellcrawl.parameters import DESCRIPTIONS, Parameters
 from cellcrawl.validation import known_names, real_array, real_number
 

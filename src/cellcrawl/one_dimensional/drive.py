@@ -6,7 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl.numerics.kernels import kernel
 from cellcrawl.one_dimensional.rosenbrock import (
     IMBALANCE,
     N_FRONT,

@@ -7,18 +7,18 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from cellcrawl._compile import kernel
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
 from cellcrawl.laws import as_law, functions
+from cellcrawl.laws.force_balance import bond_force
 from cellcrawl.laws.law import PAPER, Law
 from cellcrawl.laws.rest import RestState, local_values, rest_state, zero_in
 from cellcrawl.linear.any_law import edge_matrix, matrix_rates
-from cellcrawl.linear.bracketing import all_roots
 from cellcrawl.linear.characteristic import checked_wavenumbers
+from cellcrawl.numerics.bracketing import all_roots
+from cellcrawl.numerics.kernels import kernel
 from cellcrawl.one_dimensional.cell import checked_cell, edge_of
 from cellcrawl.parameters import Parameters
-from cellcrawl.physics.force_balance import bond_force
 from cellcrawl.validation import one_of, real_number
 
 TENSION_LAWS: Final = ("fixed", "elastic")

@@ -9,7 +9,7 @@ import numpy as np
 
 from cellcrawl.laws.law import Law
 from cellcrawl.laws.rest import RestState, edge_bearing, local_values
-from cellcrawl.linear.bracketing import bracketed_roots
+from cellcrawl.numerics.bracketing import bracketed_roots
 from cellcrawl.parameters import Parameters
 
 _FORCES: Final = np.concatenate([np.linspace(0.0, 6.0, 2401), np.linspace(6.0, 40.0, 1700)[1:]])

@@ -15,9 +15,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl.laws.force_balance import bond_force_near
 from cellcrawl.laws.functions import binding, off_rate, partials, velocity
-from cellcrawl.physics.force_balance import bond_force_near
+from cellcrawl.numerics.kernels import kernel
 
 # entries of a state
 N_FRONT, N_REAR, TENSION, IMBALANCE, X_FRONT, X_REAR = range(6)

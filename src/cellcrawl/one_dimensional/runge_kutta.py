@@ -13,10 +13,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl.laws.force_balance import SOLVED, solve_bonds
 from cellcrawl.laws.functions import binding, off_rate, velocity
 from cellcrawl.laws.law import LOCAL
-from cellcrawl.physics.force_balance import SOLVED, solve_bonds
+from cellcrawl.numerics.kernels import kernel
 
 # what `run` returns beside the number of records made
 REACHED, NO_ROOT, STEP_TOO_SMALL, TOO_MANY_STEPS = range(4)

@@ -18,14 +18,14 @@ from cellcrawl.laws import as_law
 from cellcrawl.laws.law import PAPER, Law
 from cellcrawl.laws.rest import RestState, local_values, rest_state
 from cellcrawl.linear.any_law import matrix_rates
-from cellcrawl.linear.bracketing import all_roots
 from cellcrawl.linear.characteristic import (
     Characteristic,
     characteristic,
     checked_shapes,
     checked_values,
 )
-from cellcrawl.linear.quadratic import ordered_roots
+from cellcrawl.numerics.bracketing import all_roots
+from cellcrawl.numerics.quadratic import ordered_roots
 from cellcrawl.one_dimensional.cell import (
     FREE,
     Anchoring,

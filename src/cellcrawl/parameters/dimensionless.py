@@ -111,6 +111,6 @@ class Parameters(NamedFields):
 
 def _logarithm(x: float) -> float:
     """Natural logarithm, the same bits on every machine."""
-    from cellcrawl._elementary import natural_logarithm  # brings Numba
+    from cellcrawl.numerics.elementary import natural_logarithm  # brings Numba
 
     return natural_logarithm(x)

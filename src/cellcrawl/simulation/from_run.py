@@ -10,10 +10,11 @@ import numpy as np
 import xarray as xr
 
 from cellcrawl.arguments import checked
-from cellcrawl.curve import Curve, fourier
+from cellcrawl.curve import Curve
 from cellcrawl.data import records_with
 from cellcrawl.data.units import DIMENSIONLESS, units_of
 from cellcrawl.errors import InputError
+from cellcrawl.numerics import fourier
 from cellcrawl.parameters import Parameters
 from cellcrawl.simulation.storage import open_run
 from cellcrawl.starts import CellState

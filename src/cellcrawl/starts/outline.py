@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from cellcrawl.arguments import checked
-from cellcrawl.curve import Curve, fourier
+from cellcrawl.curve import Curve
 from cellcrawl.errors import InputError, OutlineChangedWarning
+from cellcrawl.numerics import fourier
 from cellcrawl.parameters import Parameters
 from cellcrawl.starts.base import CellState
 from cellcrawl.starts.holding import held_polygon

@@ -11,10 +11,10 @@ from typing import Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel
-from cellcrawl._elementary import arc_tangent
-from cellcrawl.curve.fourier import local_values
 from cellcrawl.curve.sines import sine_and_cosine
+from cellcrawl.numerics.elementary import arc_tangent
+from cellcrawl.numerics.fourier import local_values
+from cellcrawl.numerics.kernels import kernel
 
 SAMPLES: Final = 4096
 HIGHEST: Final = 255  # mode that so many samples show

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from cellcrawl._compile import inlined_kernel, kernel
+from cellcrawl.numerics.kernels import inlined_kernel, kernel
 
 APPEARS: Final = 0.5  # time over which a disc comes or goes
 

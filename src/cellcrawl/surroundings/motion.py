@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl.numerics.kernels import kernel
 
 # entries of `motion`: whether curvature and motion are asked for; velocity; its last change and
 # what was amiss before that; the inverse matrix; centroid and area on the last edge; tries

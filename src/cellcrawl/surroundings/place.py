@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cellcrawl._compile import kernel
-from cellcrawl._elementary import hypotenuse
+from cellcrawl.laws.force_balance import SOLVED, solve_bonds
 from cellcrawl.laws.functions import off_rate, surround, velocity
-from cellcrawl.physics.force_balance import SOLVED, solve_bonds
+from cellcrawl.numerics.elementary import hypotenuse
+from cellcrawl.numerics.kernels import kernel
 from cellcrawl.surroundings.base import CompiledSurroundings
 from cellcrawl.surroundings.motion import (
     AREA,

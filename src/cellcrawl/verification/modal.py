@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from cellcrawl.curve import fourier
+from cellcrawl.numerics import fourier
 from cellcrawl.solvers import Frame
 
 

@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from cellcrawl.bench.cases import LAWS, check_start
-from cellcrawl.curve import fourier
+from cellcrawl.numerics import fourier
 from cellcrawl.parameters import Parameters
 from cellcrawl.solvers.adaptive import AdaptiveSolver
 from cellcrawl.solvers.adaptive import state as layout

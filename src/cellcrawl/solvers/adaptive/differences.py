@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel, woven_kernel
+from cellcrawl.numerics.kernels import kernel, woven_kernel
 
 HIGHEST_ORDER: Final = 5
 DIFFERENCES: Final = HIGHEST_ORDER + 3  # rows: one to raise the order by, one for its error

@@ -11,8 +11,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel, woven_kernel
-from cellcrawl._elementary import power
+from cellcrawl.numerics.elementary import power
+from cellcrawl.numerics.kernels import kernel, woven_kernel
 from cellcrawl.solvers.adaptive.differences import (
     DIFFERENCES,
     ERRORS,

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl.numerics.kernels import kernel
 from cellcrawl.solvers.adaptive.drive import (
     AT_BREAK,
     ORDER,

@@ -11,11 +11,11 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from cellcrawl._compile import kernel
-from cellcrawl._elementary import cosine, sine
-from cellcrawl.curve.fourier import BEFORE, TAPS
+from cellcrawl.laws.force_balance import SOLVED, bond_force, solve_bonds
 from cellcrawl.laws.functions import friction, off_rate, velocity
-from cellcrawl.physics.force_balance import SOLVED, bond_force, solve_bonds
+from cellcrawl.numerics.elementary import cosine, sine
+from cellcrawl.numerics.fourier import BEFORE, TAPS
+from cellcrawl.numerics.kernels import kernel
 from cellcrawl.solvers.adaptive.differences import interpolate
 from cellcrawl.solvers.adaptive.entries import FIELDS, LENGTH, ORIGIN_X, ORIGIN_Y, SCALARS, TENSION
 from cellcrawl.solvers.adaptive.mesh import places

@@ -12,9 +12,9 @@ from typing import Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel, woven_kernel
-from cellcrawl.curve.fourier import BEFORE, TAPS, lagrange_weights
-from cellcrawl.physics.exponential import exponential
+from cellcrawl.numerics.exponential import exponential
+from cellcrawl.numerics.fourier import BEFORE, TAPS, lagrange_weights
+from cellcrawl.numerics.kernels import kernel, woven_kernel
 from cellcrawl.solvers.adaptive.staggered import (
     HALO,
     cell_mean,

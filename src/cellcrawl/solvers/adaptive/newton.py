@@ -13,9 +13,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from cellcrawl._compile import inlined_kernel, kernel
-from cellcrawl._elementary import cosine, sine
 from cellcrawl.laws.functions import balance, partials, velocity
+from cellcrawl.numerics.cyclic import FACTOR_ROWS, factor_cyclic_tridiagonal, solve_factored
+from cellcrawl.numerics.elementary import cosine, sine
+from cellcrawl.numerics.kernels import inlined_kernel, kernel
 from cellcrawl.solvers.adaptive.entries import (
     AREA,
     LENGTH,
@@ -28,7 +29,6 @@ from cellcrawl.solvers.adaptive.mesh import FINE, FINE_NODE
 from cellcrawl.solvers.adaptive.place import MORE_CURVED, bent_midpoints
 from cellcrawl.solvers.adaptive.rates import RATE
 from cellcrawl.solvers.adaptive.staggered import HALO, difference_ahead, dot, fill_halo
-from cellcrawl.solvers.cyclic import FACTOR_ROWS, factor_cyclic_tridiagonal, solve_factored
 from cellcrawl.surroundings.motion import BENDS
 
 # rows of a matrix: how U answers to n and to sigma, how n answers to sigma within a step, g kappa,

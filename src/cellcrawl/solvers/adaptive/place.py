@@ -7,8 +7,8 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from cellcrawl._compile import kernel
 from cellcrawl.laws.functions import surround
+from cellcrawl.numerics.kernels import kernel
 from cellcrawl.solvers.adaptive.entries import LENGTH, ORIGIN_X, ORIGIN_Y
 from cellcrawl.solvers.adaptive.projection import (
     COSINE,

@@ -11,9 +11,9 @@ from typing import Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel, woven_kernel
-from cellcrawl._elementary import hypotenuse
 from cellcrawl.curve.sines import sine_and_cosine
+from cellcrawl.numerics.elementary import hypotenuse
+from cellcrawl.numerics.kernels import kernel, woven_kernel
 from cellcrawl.solvers.adaptive.entries import AREA, LENGTH, ORIGIN_X, ORIGIN_Y
 from cellcrawl.solvers.adaptive.staggered import (
     HALO,

@@ -14,8 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel, woven_kernel
-from cellcrawl._elementary import cosine, sine
+from cellcrawl.laws.force_balance import SOLVED, halley_step, solve_bonds
 from cellcrawl.laws.functions import (
     binding,
     nearly_renewed_rate,
@@ -23,7 +22,8 @@ from cellcrawl.laws.functions import (
     renewed_rate,
     velocity,
 )
-from cellcrawl.physics.force_balance import SOLVED, halley_step, solve_bonds
+from cellcrawl.numerics.elementary import cosine, sine
+from cellcrawl.numerics.kernels import kernel, woven_kernel
 from cellcrawl.solvers.adaptive.entries import (
     AREA,
     LENGTH,

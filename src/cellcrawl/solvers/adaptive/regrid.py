@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl.numerics.kernels import kernel
 from cellcrawl.solvers.adaptive.differences import DIFFERENCES, LEADING
 from cellcrawl.solvers.adaptive.drive import (
     CHECK_DUE,

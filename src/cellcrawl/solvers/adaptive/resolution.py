@@ -12,8 +12,8 @@ from typing import Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel
-from cellcrawl._elementary import sine
+from cellcrawl.numerics.elementary import sine
+from cellcrawl.numerics.kernels import kernel
 from cellcrawl.solvers.adaptive.entries import FIELDS
 from cellcrawl.solvers.adaptive.staggered import (
     HALO,

@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from cellcrawl._elementary import natural_logarithm
 from cellcrawl.errors import InputError
+from cellcrawl.numerics.elementary import natural_logarithm
 from cellcrawl.solvers.adaptive import drive, resolution
 from cellcrawl.solvers.adaptive import state as layout
 from cellcrawl.solvers.adaptive.differences import DIFFERENCES

@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from cellcrawl._compile import inlined_kernel, kernel
+from cellcrawl.numerics.kernels import inlined_kernel, kernel
 
 HALO: Final = 8
 _0, _1, _2, _3, _4, _5 = (np.uint64(k) for k in range(6))

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from cellcrawl.curve import fourier
+from cellcrawl.numerics import fourier
 from cellcrawl.solvers.adaptive.entries import AREA, FIELDS, LENGTH, ORIGIN_X, SCALARS, TENSION
 from cellcrawl.solvers.adaptive.staggered import HALO
 from cellcrawl.solvers.adaptive.waves import resample

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl.numerics.kernels import kernel
 from cellcrawl.solvers.adaptive.entries import AREA, LENGTH, ORIGIN_X, ORIGIN_Y, TENSION
 from cellcrawl.solvers.adaptive.staggered import HALO, sum_of_squares
 

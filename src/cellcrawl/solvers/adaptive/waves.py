@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from cellcrawl._compile import kernel
-from cellcrawl._elementary import cosine, hypotenuse, sine
+from cellcrawl.numerics.elementary import cosine, hypotenuse, sine
+from cellcrawl.numerics.kernels import kernel
 
 _ROUNDING = 3e-13  # waves smaller than this are what rounding leaves of none
 

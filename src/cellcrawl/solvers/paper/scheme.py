@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cellcrawl.errors import InputError
+from cellcrawl.laws.force_balance import SOLVED
 from cellcrawl.linear import fastest_decay
-from cellcrawl.physics.force_balance import SOLVED
 from cellcrawl.solvers.base import (
     Breakdown,
     Frame,

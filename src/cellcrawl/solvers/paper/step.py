@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl.laws.force_balance import SOLVED
 from cellcrawl.laws.functions import binding, off_rate, partials, velocity
-from cellcrawl.physics.force_balance import SOLVED
-from cellcrawl.solvers.cyclic import solve_cyclic_tridiagonal
+from cellcrawl.numerics.cyclic import solve_cyclic_tridiagonal
+from cellcrawl.numerics.kernels import kernel
 from cellcrawl.solvers.paper.tangent_angle import (
     central_difference,
     close,

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl.numerics.kernels import kernel
 
 
 @kernel

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl.laws.force_balance import SOLVED, solve_bonds
 from cellcrawl.laws.functions import binding, off_rate, partials, velocity
-from cellcrawl.physics.force_balance import SOLVED, solve_bonds
+from cellcrawl.numerics.kernels import kernel
 from cellcrawl.solvers.spline.outline import KAPPA, LOG_R, SPEED, XU, YU, N, X, Y
 from cellcrawl.surroundings.place import balance_in_place
 

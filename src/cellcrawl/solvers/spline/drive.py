@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl.numerics.kernels import kernel
 from cellcrawl.solvers.spline.balance import (
     BALANCED,
     UNSETTLED,

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcrawl._compile import kernel
-from cellcrawl.solvers.cyclic import solve_cyclic_tridiagonal
+from cellcrawl.numerics.cyclic import solve_cyclic_tridiagonal
+from cellcrawl.numerics.kernels import kernel
 from cellcrawl.solvers.spline.outline import SEGMENT, N
 
 LINKER_ROWS = 5

@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from cellcrawl._compile import inlined_kernel, kernel
+from cellcrawl.numerics.kernels import inlined_kernel, kernel
 
 ZIGZAG = 8.0  # largest size of the corrected second derivative of a wave of height 1
 _POLE = math.sqrt(3.0) - 2.0  # M is a two-way recursive filter with this pole

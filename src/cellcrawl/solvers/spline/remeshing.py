@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl.numerics.kernels import kernel
 from cellcrawl.solvers.spline.outline import (
     LOG_R,
     PACE,

@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from cellcrawl._compile import inlined_kernel, kernel
+from cellcrawl.numerics.kernels import inlined_kernel, kernel
 
 _FIRST: Final = np.uint64(0xD2511F53)
 _SECOND: Final = np.uint64(0xCD9E8D57)

@@ -14,10 +14,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from cellcrawl._compile import inlined_kernel, kernel
+from cellcrawl.laws.force_balance import SOLVED, halley_step
 from cellcrawl.laws.functions import binding, off_rate, partials, turnover, velocity
-from cellcrawl.physics.force_balance import SOLVED, halley_step
-from cellcrawl.solvers.cyclic import solve_cyclic_tridiagonal
+from cellcrawl.numerics.cyclic import solve_cyclic_tridiagonal
+from cellcrawl.numerics.kernels import inlined_kernel, kernel
 from cellcrawl.solvers.paper.step import (
     LENGTH,
     NO_ROOT,

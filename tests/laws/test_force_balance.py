@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cellcrawl.laws import PAPER
-from cellcrawl.physics.force_balance import SOLVED, bond_force, bond_force_near, solve_bonds
+from cellcrawl.laws.force_balance import SOLVED, bond_force, bond_force_near, solve_bonds
 from tests.strategies import parameters
 
 NODES = 40

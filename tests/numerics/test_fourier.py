@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cellcrawl.curve import fourier
+from cellcrawl.numerics import fourier
 
 
 @pytest.mark.parametrize("points", [24, 25])

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellcrawl.physics.exponential import exponential
+from cellcrawl.numerics.exponential import exponential
 
 
 @numba.njit

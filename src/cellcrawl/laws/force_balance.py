@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from cellcrawl._compile import inlined_kernel, kernel
 from cellcrawl.laws.functions import balance, friction, off_rate
+from cellcrawl.numerics.kernels import inlined_kernel, kernel
 
 SOLVED = -1  # what `solve_bonds` returns when every node has its root
 ROUND_OFF = 3e-14  # residual over 1 + friction below which the root is as good as rounding allows

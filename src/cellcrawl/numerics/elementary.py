@@ -12,8 +12,8 @@ from typing import Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel
-from cellcrawl.physics.exponential import exponential
+from cellcrawl.numerics.exponential import exponential
+from cellcrawl.numerics.kernels import kernel
 
 _LN2_HIGH: Final = 6.93147180369123816490e-01
 _LN2_LOW: Final = 1.90821492927058770002e-10

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl.numerics.kernels import kernel
 
 _FINER = 8  # grid refinement before local interpolation
 TAPS = 12

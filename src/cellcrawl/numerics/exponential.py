@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcrawl._compile import inlined_kernel
+from cellcrawl.numerics.kernels import inlined_kernel
 
 _SHIFT = 6755399441055744.0  # 1.5 * 2**52: adding it rounds to the nearest integer
 _LOG2E = 1.4426950408889634

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import cellcrawl
-from cellcrawl import _compile
+from cellcrawl.numerics import kernels
 
 PACKAGE = Path(cellcrawl.__file__).parent
 
@@ -38,7 +38,7 @@ def environment(tmp_path):
 def start(environment):
     """Import the package and define a kernel; return what was said on stderr."""
     code = (
-        "import cellcrawl, cellcrawl.physics.force_balance as physics; "
+        "import cellcrawl, cellcrawl.laws.force_balance as physics; "
         f"assert {str(PACKAGE)!r} not in cellcrawl.__file__; "
         "from cellcrawl.one_dimensional import front_speed"
     )
@@ -60,13 +60,13 @@ def test_without_a_cache_it_starts_and_says_so_once(environment, tmp_path):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="permissions are POSIX's")
 def test_a_temporary_folder_of_another_is_not_trusted(environment, tmp_path, monkeypatch):
-    monkeypatch.setattr(_compile.tempfile, "gettempdir", lambda: str(tmp_path))
-    folder = _compile._temporary_folder()
+    monkeypatch.setattr(kernels.tempfile, "gettempdir", lambda: str(tmp_path))
+    folder = kernels._temporary_folder()
     folder.chmod(0o777)  # what anybody could write would be run
-    assert _compile._temporary_folder() is None
+    assert kernels._temporary_folder() is None
     assert "every start compiles anew" in start(environment)
 
 
 def test_with_a_cache_nothing_is_said(recwarn):
-    assert _compile._keeps_kernels()
+    assert kernels._keeps_kernels()
     assert not recwarn.list

@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from cellcrawl._compile import kernel
+from cellcrawl.numerics.kernels import kernel
 
 _INWARD, _INVERSE, _OUTWARD, _CORNER, _SCALARS = range(5)
 FACTOR_ROWS: Final = 5  # what `factor_cyclic_tridiagonal` leaves, each of shape (nodes,)

@@ -1,0 +1,1 @@
+"""What is no physics: how kernels are compiled, elementary functions, cyclic systems, roots."""

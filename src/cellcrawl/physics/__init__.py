@@ -1,1 +1,0 @@
-"""The model's pointwise laws, once, for every solver."""
