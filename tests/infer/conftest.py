@@ -52,6 +52,13 @@ def swimmer(r_on, epsilon, seed, t_end=T_END, step=films.SAVE_EVERY, turning=0.0
     return whole.isel(time=slice(None, None, every))
 
 
+def at_rest(run):
+    """The same shapes of a cell that stays where it is."""
+    x, y = run.centroid_x - run.centroid_x[0], run.centroid_y - run.centroid_y[0]
+    moved = {"x": run.x - x, "y": run.y - y, "centroid_x": 0 * x, "centroid_y": 0 * y}
+    return run.assign(moved)
+
+
 def swim(run, keep):
     """What a bank's worker does, without a solver; few runs rest or tear."""
     seed = run.start.seed
@@ -62,6 +69,8 @@ def swim(run, keep):
         status = "fragmented"
     made = swimmer(run.parameters.r_on, run.parameters.epsilon, seed, run.t_end)
     made = made.isel(time=slice(60 if status == "fragmented" else None))
+    if mode == "stationary":
+        made = at_rest(made)
     return Outcome({"status": status, "mode": mode, "message": ""}, films.film_of(made))
 
 

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from cellcrawl.arguments import checked
+from cellcrawl.arguments import checked, file_path
 from cellcrawl.errors import InputError, StorageError
 from cellcrawl.infer import pictures
 from cellcrawl.infer.population import Comparison, Group
@@ -86,9 +86,7 @@ def report(
             raise InputError(f"fits must be what fit or fit_all returns, not {shown(one)}")
     if not cells:
         raise InputError("there is no fit to report")
-    path = Path(output)
-    if path.suffix.lower() not in (".html", ".htm"):
-        raise InputError(f"{path}: a report is written as .html")
+    path = must_be_a_page(output)
     heading = title or ("What a cell says" if len(cells) == 1 else f"What {len(cells)} cells say")
     parts = [f"<h1>{_text(heading)}</h1>", _origin(cells[0])]
     if comparison is not None:
@@ -110,6 +108,14 @@ def report(
         raise StorageError(
             f"cannot write {path}: {error.strerror or error}; give another output"
         ) from None
+    return path
+
+
+def must_be_a_page(output: str | Path) -> Path:
+    """Return the file of a report, or refuse a name that is not of an HTML page."""
+    path = file_path("output", output)
+    if path.suffix.lower() not in (".html", ".htm"):
+        raise InputError(f"{path}: a report is written as .html")
     return path
 
 

@@ -58,6 +58,8 @@ class Fit:
         The posterior of regression ABC, to which that of ``method`` is held.
     strangeness : float
         Distance from what the model makes, over that of the alarm: above 1 it is no cell of it.
+    estimate : object
+        The trained network, of a neural posterior.
     """
 
     cell: Cell
@@ -67,6 +69,7 @@ class Fit:
     method: str
     abc: Samples
     strangeness: float
+    estimate: Any = None
 
     @classmethod
     def of(
@@ -77,11 +80,13 @@ class Fit:
         samples: Samples,
         method: str,
         plain: Samples,
+        estimate: Any = None,
     ) -> Self:
         """Return the fit with its alarm."""
         thought = trained.thought(summaries[None])
         away = float(trained.alarm.strangeness(thought, summaries[None])[0])
-        return cls(cell, trained, summaries, samples, method, plain, away / trained.alarm.threshold)
+        away /= trained.alarm.threshold
+        return cls(cell, trained, summaries, samples, method, plain, away, estimate)
 
     @property
     def names(self) -> tuple[str, ...]:
