@@ -87,8 +87,9 @@ def tracks_of_records(
             )
             for c in split
         ]
-    good = ~again & ~np.isin(code, split)
-    code, time, across, up = code[good], time[good], across[good], up[good]
+    if again.any():
+        good = ~again & ~np.isin(code, split)
+        code, time, across, up = code[good], time[good], across[good], up[good]
     sizes = np.bincount(code, minlength=len(ids))
     lone = np.flatnonzero(sizes == 1)
     if lone.size:

@@ -28,6 +28,7 @@ from cellcrawl.microscopy.tables import (
     clock_seconds,
     form_of,
     read_cells,
+    words_of,
 )
 from cellcrawl.microscopy.track import Tracks
 
@@ -95,8 +96,10 @@ def read_table_tracks(path: Path, reading: Reading) -> Tracks:
         y_down,
         tuple(notes),
     )
-    scaled, x, y = reading.scaled(source, numbers["x"], numbers["y"])
     parents = _parents(cells, columns, ids, codes)
+    del cells  # the text of a long table takes more memory than its numbers
+    pa.default_memory_pool().release_unused()
+    scaled, x, y = reading.scaled(source, numbers.pop("x"), numbers.pop("y"))
     return tracks_of_records(codes, ids, t, x, y, scaled, out, parents)
 
 
@@ -109,7 +112,7 @@ def _side_by_side(
     cells = read_cells(form, places)
     numbers: dict[str, np.ndarray] = {}
     out = [LeftOut(f"row {row}", "it has another number of cells", 1) for row in cells.torn]
-    rows = len(cells.columns[places[0]])
+    rows = cells.rows
     x, y = np.empty((2, len(beside), rows))
     for number, (name, *pair) in enumerate(beside):
         for values, at in zip((x, y), pair, strict=True):
@@ -132,17 +135,15 @@ def _side_by_side(
 
 def _ids(cells: Cells, columns: Columns) -> tuple[np.ndarray, list[str]]:
     """Return the code of each row's track, -1 for none, and the names; groups keep ids apart."""
-    rows = len(next(iter(cells.columns.values())))
-    parts = [place for place in columns.groups if _varies(cells.text(place))]
+    rows = cells.rows
+    parts = [place for place in columns.groups if len(cells.words(place)[1]) > 1]
     if "id" in columns.places:
         parts.append(columns.places["id"])
     if not parts:
         return np.zeros(rows, np.int64), [""]
     codes, names = np.zeros(rows, np.int64), [""]
     for place in parts:
-        encoded = pc.dictionary_encode(_plain_ids(cells.text(place)))
-        own = encoded.indices.fill_null(-1).to_numpy(zero_copy_only=False).astype(np.int64)
-        words = [str(word) for word in encoded.dictionary.to_pylist()]
+        own, words = words_of(_plain_ids(cells.text(place)))
         if len(names) == 1:
             codes, names = own, words
             continue
@@ -169,17 +170,13 @@ def _blocks(form: Form, codes: np.ndarray) -> tuple[np.ndarray, list[str]]:
     return blocks.astype(np.int64), [str(int(number) + 1) for number in numbers]
 
 
-def _plain_ids(column: pa.Array) -> pa.Array:
+def _plain_ids(column: pa.ChunkedArray) -> pa.ChunkedArray:
     """Whole numbers written as 3.0 become 3, if all of them are; other ids stay as written."""
     filled = column.drop_null()
     whole = pc.match_substring_regex(filled, r"^-?\d+[.,]0*$")
     if len(filled) and pc.all(whole).as_py():
         return pc.replace_substring_regex(column, r"[.,]0*$", "")
     return column
-
-
-def _varies(column: pa.Array) -> bool:
-    return len(pc.unique(column.drop_null())) > 1
 
 
 def _times(
@@ -236,16 +233,14 @@ def _no_hidden_id(
     for place in range(form.width):
         if place in columns.places.values() or place in columns.groups:
             continue
-        encoded = pc.dictionary_encode(cells.text(place))
-        words = len(encoded.dictionary)
-        blocks = encoded.indices.fill_null(-1).to_numpy(zero_copy_only=False)
+        blocks, words = cells.words(place)
         changes = np.flatnonzero(np.diff(blocks))
-        if not 2 <= words <= len(blocks) // 2 or changes.size + 1 != words:
+        if not 2 <= len(words) <= blocks.size // 2 or changes.size + 1 != len(words):
             continue
         if _apart(t, numbers["x"], numbers["y"], changes):
             name = form.names[place] or f"column {place + 1}"
             raise InputError(
-                f"{form.path}: column {name!r} seems to tell {words} cells apart: "
+                f"{form.path}: column {name!r} seems to tell {len(words)} cells apart: "
                 f"say --columns id={name},... or id=none,... for one cell"
             )
 

@@ -72,29 +72,37 @@ class Form:
 
 @dataclass(frozen=True)
 class Cells:
-    """Columns of a table as text, by their place."""
+    """Columns of a table as text, by their place; in pieces, so that no second copy is made."""
 
-    columns: dict[int, pa.Array]
+    columns: dict[int, pa.ChunkedArray]
     decimal: str
     torn: tuple[int, ...]  # rows with too few or too many cells, counted from 1
 
-    def text(self, place: int) -> pa.Array:
+    @property
+    def rows(self) -> int:
+        """How many rows there are."""
+        return len(next(iter(self.columns.values())))
+
+    def text(self, place: int) -> pa.ChunkedArray:
         """Return a column as text without blanks around, null where a cell is blank."""
-        column = pc.utf8_trim_whitespace(self.columns[place])
-        blank = pc.is_in(column, value_set=pa.array(BLANKS))
-        return pc.if_else(blank, pa.scalar(None, pa.string()), column)
+        pieces = [_text(piece) for piece in self.columns[place].chunks]
+        return pa.chunked_array(pieces, pa.string())
+
+    def words(self, place: int) -> tuple[np.ndarray, list[str]]:
+        """Return which word stands in each row, -1 for a blank, and the words as they appear."""
+        return words_of(self.text(place))
 
     def numbers(self, place: int) -> tuple[np.ndarray, np.ndarray]:
         """Return a column as numbers, NaN where blank; and the rows whose cell is no number."""
-        column = self.text(place)
-        if self.decimal == ",":
-            column = pc.replace_substring(column, ",", ".")
-        try:
-            return _as_floats(column), np.empty(0, np.int64)
-        except pa.ArrowInvalid:
-            good = pc.fill_null(pc.match_substring_regex(column, _NUMBER_OR_INFINITE), True)
-            bad = np.flatnonzero(~good.to_numpy(zero_copy_only=False))
-            return _as_floats(pc.if_else(good, column, pa.scalar(None, pa.string()))), bad
+        values = np.empty(self.rows)
+        bad = [np.empty(0, np.int64)]
+        row = 0
+        for piece in self.columns[place].chunks:
+            part, wrong = _numbers(_text(piece), self.decimal)
+            values[row : row + part.size] = part
+            bad.append(row + wrong)
+            row += part.size
+        return values, np.concatenate(bad)
 
 
 def form_of(path: Path) -> Form:
@@ -163,9 +171,20 @@ def read_cells(form: Form, places: Sequence[int]) -> Cells:
     except (pa.ArrowInvalid, OSError) as error:
         told = " ".join(str(error).split())[:160]
         raise InputError(f"{path} cannot be read as a table: {told}") from None
-    columns = {int(name): read.column(name).combine_chunks() for name in wanted}
-    columns = {place: _one_array(column) for place, column in columns.items()}
+    columns = {int(name): read.column(name) for name in wanted}
     return Cells(columns, form.decimal, tuple(torn))
+
+
+def words_of(column: pa.ChunkedArray) -> tuple[np.ndarray, list[str]]:
+    """Return which word stands in each row, -1 for null, and the words as they appear."""
+    encoded = pc.dictionary_encode(column).unify_dictionaries()
+    if encoded.num_chunks == 0:
+        return np.empty(0, np.int64), []
+    places = [
+        piece.indices.fill_null(-1).to_numpy(zero_copy_only=False) for piece in encoded.chunks
+    ]
+    words = [str(word) for word in encoded.chunk(0).dictionary.to_pylist()]
+    return np.concatenate(places).astype(np.int64), words
 
 
 def blocks_of(form: Form) -> np.ndarray:
@@ -183,7 +202,7 @@ def decoded(data: bytes) -> str:
     return data.decode(_encoding(data), errors="replace")
 
 
-def clock_seconds(column: pa.Array) -> np.ndarray | None:
+def clock_seconds(column: pa.ChunkedArray) -> np.ndarray | None:
     """Return times of the form HH:MM:SS, MM:SS or ISO 8601 as seconds; None for others."""
     values = [None if cell is None else cell.strip() for cell in column.to_pylist()]
     filled = [cell for cell in values if cell]
@@ -207,6 +226,25 @@ def _seconds(clock: str) -> float:
         total = 60.0 * total + float(part)
     # Two parts are minutes and seconds.
     return sign * total
+
+
+def _text(piece: pa.Array) -> pa.Array:
+    """Return cells without blanks around, null where one is blank."""
+    trimmed = pc.utf8_trim_whitespace(piece)
+    blank = pc.is_in(trimmed, value_set=pa.array(BLANKS))
+    return pc.if_else(blank, pa.scalar(None, pa.string()), trimmed)
+
+
+def _numbers(text: pa.Array, decimal: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return cells as numbers, NaN where blank, and the places of those that are none."""
+    if decimal == ",":
+        text = pc.replace_substring(text, ",", ".")
+    try:
+        return _as_floats(text), np.empty(0, np.int64)
+    except pa.ArrowInvalid:
+        good = pc.fill_null(pc.match_substring_regex(text, _NUMBER_OR_INFINITE), True)
+        bad = np.flatnonzero(~good.to_numpy(zero_copy_only=False))
+        return _as_floats(pc.if_else(good, text, pa.scalar(None, pa.string()))), bad
 
 
 def _as_floats(column: pa.Array) -> np.ndarray:
@@ -340,10 +378,6 @@ def _decimal_comma(rows: Sequence[Sequence[str]]) -> bool:
 
 def _split_blanks(line: str) -> list[str]:
     return _split(line, " ")
-
-
-def _one_array(column: pa.Array | pa.ChunkedArray) -> pa.Array:
-    return column.combine_chunks() if isinstance(column, pa.ChunkedArray) else column
 
 
 def _lone_returns(path: Path) -> bool:
