@@ -294,6 +294,7 @@ def main() -> None:
     parser.add_argument("--cells", type=int, default=300)
     parser.add_argument("--others", type=int, default=60)
     parser.add_argument("--points", type=int, default=10)
+    parser.add_argument("--output", type=Path, default=RESULTS)
     parser.add_argument("--other", type=Path, action="append", default=[])
     asked = parser.parse_args()
     at = Measuring(asked)
@@ -308,12 +309,12 @@ def main() -> None:
         }
         if part not in ("choice", "microscope"):
             told["cells"] = asked.cells
-        write(at.bank, part, {**told, "found": found})
+        write(asked.output, at.bank, part, {**told, "found": found})
 
 
-def write(bank: Any, part: str, found: dict[str, Any]) -> None:
+def write(path: Path, bank: Any, part: str, found: dict[str, Any]) -> None:
     """Put a part into the record, and take out parts of another bank."""
-    old = json.loads(RESULTS.read_text("utf-8")) if RESULTS.exists() else {}
+    old = json.loads(path.read_text("utf-8")) if path.exists() else {}
     kept = {
         name: value
         for name, value in old.items()
@@ -326,10 +327,10 @@ def write(bank: Any, part: str, found: dict[str, Any]) -> None:
         **kept,
         part: found,
     }
-    with tempfile.NamedTemporaryFile("w", dir=RESULTS.parent, delete=False) as file:
+    with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as file:
         json.dump(result, file, indent=1)
         file.write("\n")
-    Path(file.name).replace(RESULTS)
+    Path(file.name).replace(path)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ from cellcrawl.infer import films
 
 _PER_PIXEL: Final = 2.0  # points of the edge
 _FEWEST, _MOST = 64, 1024
+_TOGETHER: Final = 8
 _SEAM: Final = 16  # points within which an outline surely has a corner
 
 
@@ -49,7 +50,13 @@ def seen(
     perimeter = 2.0 * np.pi * np.sqrt((films.WAVES**2 * np.abs(modes) ** 2).sum(axis=-1))
     wanted = _PER_PIXEL * float(np.median(perimeter.max(axis=1) / pixel))
     points = int(np.clip(2.0 ** np.ceil(np.log2(wanted)), _FEWEST, _MOST))
-    return _in_pixels(path, modes, pixel[:, None, None], aside[:, None, None], points)
+    films_ = np.empty_like(path), np.empty_like(modes)
+    for first in range(0, len(path), _TOGETHER):  # few enough for the processor's cache
+        part = slice(first, first + _TOGETHER)
+        films_[0][part], films_[1][part] = _in_pixels(
+            path[part], modes[part], pixel[part, None, None], aside[part, None, None], points
+        )
+    return films_
 
 
 def _in_pixels(

@@ -19,7 +19,7 @@ FEWEST_RUNS: Final = 60
 _ASIDE: Final = 0.15  # of the runs are set apart, to try the method on
 _MOST_ASIDE: Final = 600
 _LEVELS: Final = (0.5, 0.8, 0.9, 0.95)
-FALSE_ALARMS: Final = 0.04
+FALSE_ALARMS: Final = 0.03
 _FAR: Final = 12.0  # spreads beyond which one summary counts no more
 
 
