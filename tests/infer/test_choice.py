@@ -13,8 +13,8 @@ UNIT = {"time_unit": (0.8, 1.25, "log")}
 def others(tmp_path_factory):
     """Two banks of another law: one whose cells turn, one whose films are the paper's."""
     folder = tmp_path_factory.mktemp("laws")
-    turning = make_bank(160, folder / "turning.h5", laws="stiffness", turning=0.25)
-    alike = make_bank(160, folder / "alike.h5", laws="stiffness", seed=2)
+    turning = make_bank(90, folder / "turning.h5", laws="stiffness", turning=0.25)
+    alike = make_bank(90, folder / "alike.h5", laws="stiffness", seed=2)
     return turning, alike
 
 

@@ -9,10 +9,17 @@ import pytest
 
 import cellcrawl as cc
 from cellcrawl.command_line.main import run
-from cellcrawl.infer import bank_file
+from cellcrawl.infer import bank_file, page, regression
 from tests.infer.conftest import swimmer
 
 FILMED = ["--pixel-size", "0.1 um", "--frame-interval", "0.5 s"]
+
+
+@pytest.fixture(autouse=True)
+def _quick(monkeypatch):
+    """Train and draw as little as will do: what is asked here is what the commands do with it."""
+    monkeypatch.setattr(regression, "_FEWEST_STEPS", 100)
+    monkeypatch.setattr(page, "_DPI", 30)
 
 
 @pytest.fixture(scope="module")
@@ -70,10 +77,10 @@ def test_a_film_becomes_a_page(here, capsys):
     told = capsys.readouterr().out
     low, high = map(float, re.search(r"r_on .* from ([\d.]+) to ([\d.]+)", told).groups())
     assert low < 28.0 < high
-    page = (here / "fit.html").read_text("utf-8")
-    assert "length_unit" in page  # read off the outlines
-    assert "cellcrawl" in page
-    assert 'src="http' not in page
+    text = (here / "fit.html").read_text("utf-8")
+    assert "length_unit" in text  # read off the outlines
+    assert "What to know" in text
+    assert 'src="http' not in text
 
 
 def test_several_tracks_are_fitted_one_by_one_and_together(here, capsys):
@@ -112,7 +119,7 @@ MISTAKES = {
     "one frame": (
         ["bare.csv", "--bank", "bank.h5", "--length-unit", "1"],
         lambda text: "\n".join(text.splitlines()[:2]) + "\n",
-        "1 frame",
+        "a single record is no path",
     ),
     "a resting cell": (
         ["bare.csv", "--bank", "bank.h5", "--length-unit", "1"],

@@ -85,7 +85,7 @@ def test_a_file_that_is_no_network_is_refused_and_nothing_in_it_is_run(how, kept
         with np.load(path) as file:
             arrays = {name: file[name] for name in file.files}
         first = next(name for name in arrays if name.startswith("w:"))
-        arrays[first] = np.zeros(3, np.float32)
+        arrays[first] = np.zeros(7, np.float32)
         with wrong.open("wb") as file:
             np.savez(file, **arrays)
     else:

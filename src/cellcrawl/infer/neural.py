@@ -141,7 +141,7 @@ def load_estimate(path: Path, taught: Trained) -> Estimate:
     """
     torch = _torch()
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             header = json.loads(bytes(file["header"]))
             arrays = {name: file[name] for name in file.files if name != "header"}
             if not isinstance(header, dict):

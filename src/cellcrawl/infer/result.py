@@ -207,7 +207,7 @@ class Fit:
             rows.append(
                 {
                     "name": name,
-                    "unit": unit_of(name),
+                    "unit": "" if self.cell.model_units else unit_of(name),
                     "meaning": meaning_of(name),
                     **found._asdict(),
                     "of the prior": float(narrowed),
@@ -217,7 +217,7 @@ class Fit:
             rows.append(
                 {
                     "name": LENGTH_UNIT,
-                    "unit": unit_of(LENGTH_UNIT),
+                    "unit": "" if self.cell.model_units else unit_of(LENGTH_UNIT),
                     "meaning": meaning_of(LENGTH_UNIT),
                     **self.radius._asdict(),
                     "of the prior": float("nan"),
