@@ -81,7 +81,7 @@ class Measuring:
         return np.array([one.strangeness for one in fits]), fits
 
 
-def taught_for(bank: Any, cells: list[Cell], camera: Camera, looks: int = 4) -> Trained:
+def taught_for(bank: Any, cells: list[Cell], camera: Camera, looks: int = 3) -> Trained:
     """Return what a bank teaches of such cells."""
     _, microscope = fitting.microscope_of(cells, bank, TIME, 1.0, camera.pixel, camera.error)
     return train(bank, microscope, looks)

@@ -35,7 +35,7 @@ def fit(
     length_unit: Any = None,
     pixel: float | None = None,
     error: float | None = None,
-    looks: int = 4,
+    looks: int = 3,
     seed: int = 0,
     network: str | Path | None = None,
 ) -> Fit:
@@ -106,7 +106,7 @@ def fit_all(
     length_unit: Any = None,
     pixel: float | None = None,
     error: float | None = None,
-    looks: int = 4,
+    looks: int = 3,
     seed: int = 0,
     network: str | Path | None = None,
 ) -> list[Fit]:
