@@ -425,16 +425,17 @@ def _calls(folder: Path) -> Iterator[Call]:
     ):  # fmt: skip
         yield call(function, parameters=p)
     yield call(one.still_tension, parameters=p, laws="paper")
-    yield call(one.crawling_states, parameters=p, anchoring=one.Anchoring())
+    yield call(one.crawling_states, parameters=p, anchoring=one.Anchoring(), laws="paper")
     yield call(one.front_speed, parameters=p, tension=one.still_tension(p), laws="paper")
     yield call(one.uniform_states, parameters=p, tension=100.0, laws="paper")
     yield call(
-        one.boundaries, parameters=p, which="symmetric", anchoring=one.Anchoring(),
+        one.boundaries, parameters=p, which="symmetric", anchoring=one.Anchoring(), laws="paper",
         **{name: values[:2] for name, values in ranges.items()},
     )  # fmt: skip
     yield call(
-        one.growth_rates, parameters=p, symmetry="symmetric", anchoring=one.Anchoring(), r_on=[20.0]
-    )
+        one.growth_rates, parameters=p, symmetry="symmetric", anchoring=one.Anchoring(),
+        laws="paper", r_on=[20.0],
+    )  # fmt: skip
     yield call(
         one.flat_growth_rates, parameters=p, k=[1, 2], off_rate=50.0, tension_law="fixed",
         length=6.0, anchoring=0.0, laws="paper",
@@ -547,7 +548,8 @@ def _calls(folder: Path) -> Iterator[Call]:
     yield call(plot.two_edges, dataset=edges, axes=list(Figure().subplots(3, 1)))
     yield call(
         one.phase_diagram, parameters=p, starts=["small"], t_end=1.0, rtol=1e-3,
-        anchoring=one.Anchoring(), **{name: values[:2] for name, values in ranges.items()},
+        anchoring=one.Anchoring(), laws="paper",
+        **{name: values[:2] for name, values in ranges.items()},
     )  # fmt: skip
     yield call(
         cc.movie, dataset=run, path=folder / "cell.gif", fps=25.0, seconds=0.1, every=None,

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from cellcrawl import branches as branches
+    from cellcrawl import curve as curve
+    from cellcrawl import data as data
     from cellcrawl import infer as infer
     from cellcrawl import laws as laws
     from cellcrawl import linear as linear
@@ -18,9 +20,14 @@ if TYPE_CHECKING:
     from cellcrawl import modes as modes
     from cellcrawl import observables as observables
     from cellcrawl import one_dimensional as one_dimensional
+    from cellcrawl import parameters as parameters
     from cellcrawl import plot as plot
+    from cellcrawl import reproduction as reproduction
+    from cellcrawl import solvers as solvers
+    from cellcrawl import starts as starts
     from cellcrawl import surroundings as surroundings
     from cellcrawl import sweeps as sweeps
+    from cellcrawl import verification as verification
     from cellcrawl.citing import cite as cite
     from cellcrawl.curve import Curve as Curve
     from cellcrawl.errors import CellcrawlError as CellcrawlError
@@ -49,6 +56,7 @@ if TYPE_CHECKING:
     from cellcrawl.starts import FromOutline as FromOutline
     from cellcrawl.starts import PerturbedCircle as PerturbedCircle
     from cellcrawl.starts import RandomPerturbation as RandomPerturbation
+    from cellcrawl.starts import Start as Start
     from cellcrawl.sweeps import Grid as Grid
     from cellcrawl.sweeps import Sweep as Sweep
     from cellcrawl.sweeps import open_sweep as open_sweep
@@ -71,6 +79,7 @@ _HOMES = {
     "RandomPerturbation": "starts",
     "Scales": "parameters",
     "Schedule": "parameters",
+    "Start": "starts",
     "StorageError": "errors",
     "cite": "citing",
     "classify": "modes",
@@ -102,6 +111,8 @@ _MODULES = (
     "surroundings",
     "sweeps",
 )
+# Modules of which the reference names a part; their other functions check no arguments.
+_INNER = ("curve", "data", "parameters", "reproduction", "solvers", "starts", "verification")
 
 __all__ = [*_HOMES, *_MODULES, "__version__"]
 
@@ -109,7 +120,7 @@ __all__ = [*_HOMES, *_MODULES, "__version__"]
 def __getattr__(name: str) -> Any:
     if name in _HOMES:
         value = getattr(importlib.import_module(f"cellcrawl.{_HOMES[name]}"), name)
-    elif name in _MODULES:
+    elif name in _MODULES or name in _INNER:
         value = importlib.import_module(f"cellcrawl.{name}")
     elif name == "__version__":
         value = importlib.import_module("importlib.metadata").version("cellcrawl")
@@ -120,4 +131,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted([*__all__, *_INNER])

@@ -11,8 +11,8 @@ from PIL import Image
 import cellcrawl as cc
 from cellcrawl.command_line.main import run
 from cellcrawl.command_line.report import _report_motion
+from cellcrawl.data import STATUSES
 from cellcrawl.parameters import DESCRIPTIONS
-from cellcrawl.simulation.events import STATUSES
 from tests.runs import circle_on_track
 
 QUICK = ["--solver", "paper", "--nodes", "100", "--t-end", "0.3"]

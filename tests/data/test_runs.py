@@ -8,7 +8,7 @@ import xarray as xr
 
 import cellcrawl as cc
 from cellcrawl.data import FIELDS, TRACK_FIELDS, records_with
-from cellcrawl.simulation.units import units_of
+from cellcrawl.data.units import units_of
 from cellcrawl.data.schema import DIMENSIONAL
 from cellcrawl.parameters.scales import KINDS
 from tests.runs import circling, straight

@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 
 import cellcrawl as cc
+from cellcrawl.one_dimensional import theory
 
 od = cc.one_dimensional
 P = cc.Parameters(r_on=25, zeta_1=600)
@@ -211,6 +212,52 @@ def test_boundaries_lie_where_growth_and_crawling_begin():
             for step in (-1.0, 1.0)
         )
         assert below == 0 < above
+
+
+def test_rates_of_any_law_are_those_of_the_quadratics_under_the_papers():
+    values = {"r_on": np.array([10.0, 25.0, 60.0])}
+    for anchoring in (od.Anchoring(), BODY):
+        for symmetry in ("symmetric", "antisymmetric"):
+            if symmetry == "antisymmetric" and anchoring is BODY:
+                continue  # three rates there, of which the quadratic keeps a pair
+            matrices = theory._matrices(P, symmetry, anchoring, values, cc.laws.PAPER)
+            found = np.sort_complex(np.linalg.eigvals(matrices))
+            true = np.sort_complex(od.growth_rates(P, symmetry, anchoring=anchoring, **values))
+            np.testing.assert_allclose(found, true, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("laws", "cell"),
+    [
+        (cc.laws.CatchSlip(catch=2.0, slip=0.9), P),
+        (cc.laws.PolymerizationUnderLoad(stall=6000.0), CONSISTENT),
+    ],
+)
+def test_under_other_laws_runs_settle_into_the_stable_crawling_state(laws, cell):
+    states = od.crawling_states(cell, laws=laws)
+    assert [state.speed for state in states] == sorted(state.speed for state in states)
+    state = states[-1]
+    assert state.stable
+    run = od.simulate_two_edges(cell, 40.0, start="large", laws=laws)
+    assert run.tension[-1].item() == pytest.approx(state.tension, rel=1e-7)
+    np.testing.assert_allclose(run.bound_fraction[-1], state.bound_fractions, rtol=1e-7)
+    assert od.regime(run).speed == pytest.approx(state.speed, rel=1e-6)
+    plane = {"r_on": [cell.r_on - 1.0, cell.r_on], "zeta_1": [cell.zeta_1 - 1.0, cell.zeta_1]}
+    diagram = od.phase_diagram(cell, starts="large", laws=laws, **plane)
+    assert od.REGIMES[int(diagram.regime[0, 1, 1])] == "crawling"
+    assert float(diagram.speed[0, 1, 1]) == pytest.approx(state.speed, rel=1e-3)
+
+
+def test_under_other_laws_the_still_cell_loses_its_symmetry_where_its_rate_is_nought():
+    laws = cc.laws.CatchSlip(catch=2.0, slip=0.9)
+    values = np.linspace(2.0, 60.0, 30)
+    rates = od.growth_rates(P, "antisymmetric", laws=laws, r_on=values)
+    assert rates.shape == (30, 2)
+    assert np.all(np.abs(rates).min(axis=-1) < 1e-9)  # a shift
+    (change,) = np.flatnonzero(np.diff(rates[:, 0].real > 1e-9))[:1]
+    for r_on, ends in ((values[change], "still"), (values[change + 1], "crawling")):
+        run = od.simulate_two_edges(P.replace(r_on=r_on), 60.0, laws=laws)
+        assert od.regime(run).name == ends
 
 
 def test_an_anchored_still_cell_starts_to_take_turns_at_a_hopf_point():

@@ -18,7 +18,7 @@ from cellcrawl.reproduction import reproduce
 from cellcrawl.reproduction.fig5 import period
 from cellcrawl.reproduction.fig6 import routes
 from cellcrawl.reproduction.plane import keep_table, verdicts
-from cellcrawl.reproduction.workplace import Workplace
+from cellcrawl.reproduction.workspace import Workspace
 from tests.runs import circling
 
 
@@ -71,7 +71,7 @@ def test_a_verdict_is_what_whole_cells_agree_on():
 
 
 def test_the_table_of_points_leaves_torn_cells_out_of_means(tmp_path):
-    keep_table(Workplace(tmp_path, "fig7"), ROWS, ("tension",))
+    keep_table(Workspace(tmp_path, "fig7"), ROWS, ("tension",))
     lines = (tmp_path / "fig7" / "points.csv").read_text().splitlines()
     assert lines[0] == "r_on,zeta_1,verdict,fragmented,gliding,rotational,zigzag,tension"
     assert lines[1:] == [

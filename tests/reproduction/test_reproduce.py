@@ -14,7 +14,7 @@ from cellcrawl.errors import InputError, StorageError
 from cellcrawl.reproduction import GROUPS, RECIPES, reproduce
 from cellcrawl.reproduction.cells import NINE, TRANSITIONS
 from cellcrawl.reproduction.runs import kept_run
-from cellcrawl.reproduction.workplace import Workplace
+from cellcrawl.reproduction.workspace import Workspace
 
 CELL = cc.Parameters(r_on=26, zeta_1=600)
 
@@ -85,7 +85,7 @@ def test_what_is_there_is_not_made_again(folder):
 
 @pytest.mark.parametrize("damage", ["cut", "lost", "record"])
 def test_what_is_damaged_counts_as_not_done(damage, tmp_path):
-    place = Workplace(tmp_path, "fig2")
+    place = Workspace(tmp_path, "fig2")
     place.table("numbers", {"a": [1.0, 2.0]})
     place.finish({"identity": "this", "found": []})
     assert place.finished("this") is not None
@@ -143,14 +143,14 @@ def test_an_unreadable_run_is_made_anew(tmp_path):
 
 
 def test_a_failed_write_leaves_nothing_half(tmp_path):
-    place = Workplace(tmp_path, "fig2")
+    place = Workspace(tmp_path, "fig2")
     (tmp_path / "fig2" / "table.csv").mkdir(parents=True)
     with pytest.raises(StorageError, match="cannot write"):
         place.table("table", {"a": [1]})
     assert [path.name for path in (tmp_path / "fig2").iterdir()] == ["table.csv"]
     (tmp_path / "file").write_text("")
     with pytest.raises(StorageError, match="cannot make the folder"):
-        Workplace(tmp_path / "file", "fig2").data("x", xr.Dataset())
+        Workspace(tmp_path / "file", "fig2").data("x", xr.Dataset())
 
 
 @pytest.mark.parametrize(

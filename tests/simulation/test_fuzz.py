@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import cellcrawl as cc
+from cellcrawl.data import STATUSES
 from cellcrawl.parameters import DESCRIPTIONS, ELASTICITIES
 from cellcrawl.simulation.dataset import FIELDS
-from cellcrawl.simulation.events import STATUSES
 
 LONGEST = 120.0  # seconds: a run that takes longer hangs, on any machine
 

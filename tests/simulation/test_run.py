@@ -12,9 +12,9 @@ from hypothesis import event
 from hypothesis import strategies as st
 
 import cellcrawl as cc
+from cellcrawl.data import STATUSES
 from cellcrawl.parameters import DESCRIPTIONS
 from cellcrawl.simulation.dataset import FIELDS, check_run
-from cellcrawl.simulation.events import STATUSES
 from cellcrawl.solvers import SOLVERS as SOLVER_TYPES
 from tests.conftest import Given, check_start
 

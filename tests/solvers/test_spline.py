@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 
 import cellcrawl as cc
 from cellcrawl.curve import Curve
+from cellcrawl.data import STATUSES
 from cellcrawl.parameters import CONSTANT, Schedule
 from cellcrawl.simulation.dataset import FIELDS, decode_attribute
-from cellcrawl.simulation.events import STATUSES
 from cellcrawl.solvers.conditions import Conditions
 from cellcrawl.solvers.paper import step as paper_step
 from cellcrawl.solvers.spline import SplineSolver

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import cellcrawl as cc
-from cellcrawl.sweeps import crew, store, worker
+from cellcrawl.sweeps import dispatch, store, worker
 from cellcrawl.sweeps.executors import InProcess
 from cellcrawl.sweeps.identity import run_key
 from cellcrawl.sweeps.parts import COLUMNS
@@ -256,13 +256,13 @@ def test_the_driver_holds_no_rows(tmp_path):
     grid = cc.Grid(axes={"seed": {"from": 1, "to": 4000, "step": 1}})
     place = store.SweepStore(tmp_path / "out")
     place.take(grid, "rows", extend=False)
-    todo = crew.Todo(grid, range(len(grid)), "rows", set())
-    team = crew.Crew(place, InProcess(), "rows", "sweep", lambda run, keep: Outcome(DONE))
+    todo = dispatch.Todo(grid, range(len(grid)), "rows", set())
+    team = dispatch.Dispatcher(place, InProcess(), "rows", "sweep", lambda run, keep: Outcome(DONE))
     peaks = []
     tracemalloc.start()
     for left in (2000, 0):
         part = Until(todo, left)
-        team.work(part, crew.RunsBar(False, 1, 1))
+        team.work(part, dispatch.RunsBar(False, 1, 1))
         peaks.append(tracemalloc.get_traced_memory()[0])
     tracemalloc.stop()
     assert len(cc.open_sweep(tmp_path / "out").table(["key"])) == 4000
@@ -272,7 +272,7 @@ def test_the_driver_holds_no_rows(tmp_path):
 class Until:
     """Gives out runs of another until some are left."""
 
-    def __init__(self, todo: crew.Todo, leave: int) -> None:
+    def __init__(self, todo: dispatch.Todo, leave: int) -> None:
         self._todo, self._leave = todo, leave
 
     @property

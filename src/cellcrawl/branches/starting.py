@@ -18,12 +18,12 @@ from cellcrawl.branches.state import GLIDING, TURNING, SteadyState
 from cellcrawl.branches.system import NotFound, System
 from cellcrawl.curve import fourier
 from cellcrawl.data import decode_attribute, records_with
+from cellcrawl.data.units import DIMENSIONLESS, units_of
 from cellcrawl.errors import InputError
 from cellcrawl.laws import as_law
 from cellcrawl.laws.law import PAPER, Law
 from cellcrawl.laws.rest import rest_state
 from cellcrawl.parameters import Parameters
-from cellcrawl.simulation.units import DIMENSIONLESS, units_of
 from cellcrawl.threads import on_one_thread
 from cellcrawl.validation import real_number
 

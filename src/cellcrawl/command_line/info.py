@@ -10,9 +10,9 @@ import click
 from cellcrawl.command_line.folders import run_in, sweep_in
 from cellcrawl.command_line.options import say
 from cellcrawl.command_line.report import report_run, report_sweep
+from cellcrawl.data import STATUSES
 from cellcrawl.parameters import Parameters
 from cellcrawl.simulation.dataset import decode_attribute
-from cellcrawl.simulation.events import STATUSES
 
 if TYPE_CHECKING:
     from cellcrawl.sweeps import Sweep

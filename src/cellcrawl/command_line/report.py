@@ -10,8 +10,8 @@ import xarray as xr
 
 from cellcrawl.command_line.main import CANCELLED, RUN_FAILED
 from cellcrawl.command_line.options import near, say
+from cellcrawl.data import MODEL_ENDINGS
 from cellcrawl.simulation.dataset import decode_attribute
-from cellcrawl.simulation.events import MODEL_ENDINGS
 
 _TRANSIENT = 0.5  # part of a run taken as its transient when its motion is summed up
 

@@ -15,12 +15,12 @@ import xarray as xr
 
 from cellcrawl.arguments import checked
 from cellcrawl.data import decode_attribute
+from cellcrawl.data.units import units_of
 from cellcrawl.errors import InputError, StorageError
 from cellcrawl.explorer import bundle, links
 from cellcrawl.modes import FEWEST_RECORDS, classify
 from cellcrawl.observables.inputs import records_with
 from cellcrawl.parameters import Parameters
-from cellcrawl.simulation.units import units_of
 from cellcrawl.validation import one_of, shown, whole_number
 
 MODULE: Final = "solver.wasm"

@@ -50,7 +50,7 @@ def rest_states(
         raise InputError(f"{laws.name}: {complaint}")
     p = {**local_values(parameters, laws), "kappa": curvature}
     with np.errstate(all="ignore"):
-        speed = np.broadcast_to(_at(laws, p, _FORCES)[0], _FORCES.shape)
+        speed = np.broadcast_to(edge_bearing(laws, p, _FORCES)[0], _FORCES.shape)
     out, finite = speed > 0.0, np.isfinite(speed)
     changes = np.flatnonzero((out[:-1] != out[1:]) & finite[:-1] & finite[1:])
     return [_between(laws, p, _FORCES[k], _FORCES[k + 1]) for k in changes]
@@ -104,8 +104,12 @@ class CellAtRest(Parameters):
         return self.rest.tension
 
 
-def _at(laws: Law, p: dict[str, Any], phi: Any) -> tuple[Any, Any, Any, Any]:
-    """Velocity of an edge whose bonds bear ``phi``, off-rate, bound fraction and tension."""
+def edge_bearing(laws: Law, p: dict[str, Any], phi: Any) -> tuple[Any, Any, Any, Any]:
+    """Velocity, off-rate, bound fraction and tension of an edge that moves steadily.
+
+    Its bonds bear ``phi`` and are in equilibrium; ``p`` holds the local parameters and the
+    curvature, numbers or arrays.
+    """
     evaluate = laws.compiled.evaluate
     values = {**p, "phi": phi, "sigma": 0.0, "n": 0.0}
     values["r"] = evaluate("off_rate", values)
@@ -127,14 +131,14 @@ def zero_in(laws: Law, what: str, values: dict[str, Any], name: str, guess: floa
 
 
 def _between(laws: Law, p: dict[str, Any], low: float, high: float) -> RestState:
-    outward = _at(laws, p, low)[0] > 0.0
+    outward = edge_bearing(laws, p, low)[0] > 0.0
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         if middle in (low, high):
             break
-        if (_at(laws, p, middle)[0] > 0.0) == outward:
+        if (edge_bearing(laws, p, middle)[0] > 0.0) == outward:
             low = middle
         else:
             high = middle
-    _, r, n, sigma = _at(laws, p, low)
+    _, r, n, sigma = edge_bearing(laws, p, low)
     return RestState(float(low), float(r), float(n), float(sigma))

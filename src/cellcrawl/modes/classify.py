@@ -10,6 +10,8 @@ import numpy as np
 import xarray as xr
 
 from cellcrawl.arguments import checked
+from cellcrawl.data import STATUSES
+from cellcrawl.data.units import units_of
 from cellcrawl.modes import rule
 from cellcrawl.modes.confidence import trust
 from cellcrawl.modes.evidence import Evidence, gather
@@ -18,8 +20,6 @@ from cellcrawl.modes.result import STEADY_SPIN, Classification, Measures
 from cellcrawl.observables.inputs import records_with
 from cellcrawl.observables.smoothing import SmoothTrack, smooth
 from cellcrawl.observables.track import Track, as_track, track_of_checked
-from cellcrawl.simulation.events import STATUSES
-from cellcrawl.simulation.units import units_of
 from cellcrawl.validation import real_number
 
 FEWEST_RECORDS = 12

@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 
 from cellcrawl.arguments import checked
+from cellcrawl.data.units import units_of
 from cellcrawl.observables.inputs import records_with
 from cellcrawl.observables.track import Track, as_track
-from cellcrawl.simulation.units import units_of
 
 AT_REST = 1e-6
 """A cell slower than this fraction of the run's highest speed has no heading."""

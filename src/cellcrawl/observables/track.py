@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.data.units import units_of
 from cellcrawl.errors import InputError
 from cellcrawl.microscopy.track import Track
 from cellcrawl.observables.inputs import records_with
-from cellcrawl.simulation.units import units_of
 from cellcrawl.validation import real_array, without_masked
 
 __all__ = ["Track", "as_track", "track_of_checked"]

@@ -14,7 +14,6 @@ from cellcrawl.laws import as_law
 from cellcrawl.laws.law import PAPER, Law
 from cellcrawl.laws.rest import rest_state
 from cellcrawl.parameters import Parameters
-from cellcrawl.physics.force_balance import solve_bonds
 from cellcrawl.solvers.conditions import edge_column
 from cellcrawl.validation import real_number, shown
 
@@ -90,20 +89,6 @@ def still_tension(parameters: Parameters, laws: Any = PAPER) -> float:
 def edge_of(parameters: Parameters, laws: Law, nodes: int) -> np.ndarray:
     """Return the local parameters at the nodes, shape (rows of the law, nodes)."""
     return np.repeat(edge_column(parameters, laws), nodes, axis=1)
-
-
-def off_rates_at(velocity: np.ndarray) -> np.ndarray:
-    """Return the off-rates at which the paper's retrograde velocity has values from 0 on.
-
-    There the friction of the network alone balances a pull of that size.
-    """
-    flat = np.ravel(np.asarray(velocity, float))
-    edge = np.zeros((len(PAPER.rows), flat.size))
-    edge[PAPER.rows.index("sigma_c")] = flat
-    phi, nothing = np.full(flat.size, np.nan), np.zeros(flat.size)
-    solve_bonds(PAPER.compiled, phi, nothing, 0.0, nothing, edge)
-    rates: np.ndarray = np.exp(phi).reshape(np.shape(velocity))
-    return rates
 
 
 def checked_cell(parameters: object, anchoring: object = FREE) -> None:

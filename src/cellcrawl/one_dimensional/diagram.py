@@ -11,6 +11,8 @@ import xarray as xr
 
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
+from cellcrawl.laws import as_law
+from cellcrawl.laws.law import PAPER, Law
 from cellcrawl.linear.characteristic import two_axes
 from cellcrawl.linear.level_curves import level_curves
 from cellcrawl.one_dimensional import drive
@@ -38,6 +40,7 @@ def phase_diagram(
     t_end: float = 60.0,
     rtol: float = 1e-4,
     anchoring: Anchoring = FREE,
+    laws: Any = PAPER,
     **ranges: Any,
 ) -> xr.Dataset:
     """Label the regime of two edges over any two parameters by the rule of `regime`.
@@ -54,6 +57,8 @@ def phase_diagram(
         Error allowed in a step, 1e-12 to 1e-2.
     anchoring : Anchoring
         Springs to the cell body; none unless given.
+    laws : Law or str
+        The law set; the paper's unless given.
     **ranges : array
         The two parameters by name, each with its increasing values; the first is the first axis:
         ``phase_diagram(p, r_on=np.linspace(5, 80, 40), zeta_1=np.linspace(300, 1000, 40))``.
@@ -72,6 +77,7 @@ def phase_diagram(
         For other than two parameters, unknown names or starts, or values out of range.
     """
     checked_cell(parameters, anchoring)
+    law = as_law(laws)
     axes = two_axes("a phase diagram", ranges)
     starts = [starts] if isinstance(starts, str) else list(starts)
     if not starts:
@@ -89,7 +95,7 @@ def phase_diagram(
     for i, j in np.ndindex(x.size, y.size):
         cell = parameters.replace(**{first: float(x[i]), second: float(y[j])})
         for k, name in enumerate(starts):
-            label = _label(cell, start_of(cell, name), times, rtol, anchoring)
+            label = _label(cell, start_of(cell, name, law), times, rtol, anchoring, law)
             codes[k, i, j] = REGIMES.index(label.name)
             settled[k, i, j] = label.settled
             for measure, values in found.items():
@@ -118,6 +124,7 @@ def phase_diagram(
         "model": "two edges",
         "parameters": json.dumps(parameters.to_dict()),
         "anchoring": json.dumps(vars(anchoring)),
+        "laws": json.dumps(law.describe()),
         "regimes": json.dumps(REGIMES),
         "t_end": t_end,
         "rtol": rtol,
@@ -127,7 +134,12 @@ def phase_diagram(
 
 @checked
 def boundaries(
-    parameters: Parameters, which: str, *, anchoring: Anchoring = FREE, **ranges: Any
+    parameters: Parameters,
+    which: str,
+    *,
+    anchoring: Anchoring = FREE,
+    laws: Any = PAPER,
+    **ranges: Any,
 ) -> list[np.ndarray]:
     """Curves of theory in the plane of two parameters, to lay over a phase diagram.
 
@@ -140,6 +152,8 @@ def boundaries(
         symmetry, or where steady crawling begins to exist (stable or not).
     anchoring : Anchoring
         Springs to the cell body; none unless given.
+    laws : Law or str
+        The law set; the paper's unless given. Others take some seconds.
     **ranges : array
         The two parameters by name, each with at least the two ends of its range.
 
@@ -155,23 +169,29 @@ def boundaries(
         For an unknown name, other than two parameters, or values out of range.
     """
     checked_cell(parameters, anchoring)
+    law = as_law(laws)
     one_of("which", which, BOUNDARIES)
     (first, x), (second, y) = two_axes("a phase diagram", ranges).items()
 
     def field(at_x: np.ndarray, at_y: np.ndarray) -> np.ndarray:
         values = {first: np.asarray(at_x, float), second: np.asarray(at_y, float)}
         if which == "crawling":
-            return crawling_margin(parameters, anchoring, values)
-        return margin(parameters, which, anchoring, values)
+            return crawling_margin(parameters, anchoring, values, law)
+        return margin(parameters, which, anchoring, values, law)
 
     lines = (np.linspace(axis[0], axis[-1], int(np.clip(axis.size, *_GRID))) for axis in (x, y))
     return level_curves(field, *lines)
 
 
 def _label(
-    cell: Parameters, start: TwoEdges, times: np.ndarray, rtol: float, anchoring: Anchoring
+    cell: Parameters,
+    start: TwoEdges,
+    times: np.ndarray,
+    rtol: float,
+    anchoring: Anchoring,
+    laws: Law,
 ) -> Regime:
-    records, _, _, ending = integrate(cell, start, times, rtol, anchoring)
+    records, _, _, ending = integrate(cell, start, times, rtol, anchoring, laws)
     if ending != drive.REACHED:
         return FAILED
     late = records[1:]

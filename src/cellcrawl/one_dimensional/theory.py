@@ -2,19 +2,22 @@
 
 Linearised about the still state, the sum and the difference of the edges decouple. The sum feels
 the tension and grows as the breathing mode of the round cell; the difference does not, and grows as
-its translation without diffusion. ``a, b, c, q`` are those of `linear.base_state`.
+its translation without diffusion. ``a, b, c, q`` are those of `linear.base_state`, for the paper's
+laws, whose rates are the roots of a quadratic; those of other laws are eigenvalues.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from cellcrawl.arguments import checked
-from cellcrawl.laws.law import PAPER
-from cellcrawl.laws.rest import local_values
+from cellcrawl.laws import as_law
+from cellcrawl.laws.law import PAPER, Law
+from cellcrawl.laws.rest import RestState, local_values, rest_state
+from cellcrawl.linear.any_law import matrix_rates
 from cellcrawl.linear.bracketing import all_roots
 from cellcrawl.linear.characteristic import (
     Characteristic,
@@ -28,8 +31,8 @@ from cellcrawl.one_dimensional.cell import (
     Anchoring,
     checked_cell,
     length_stiffness,
-    off_rates_at,
 )
+from cellcrawl.one_dimensional.moving_edges import Branch, MovingEdges
 from cellcrawl.parameters import Parameters
 from cellcrawl.validation import one_of
 
@@ -58,7 +61,12 @@ class CrawlingState(NamedTuple):
 
 @checked
 def growth_rates(
-    parameters: Parameters, symmetry: str, *, anchoring: Anchoring = FREE, **values: Any
+    parameters: Parameters,
+    symmetry: str,
+    *,
+    anchoring: Anchoring = FREE,
+    laws: Any = PAPER,
+    **values: Any,
 ) -> np.ndarray:
     """Growth rates of the still cell for edges that move alike or against each other.
 
@@ -70,6 +78,8 @@ def growth_rates(
         Both edges outwards together, which stretches the cell, or one out and one in.
     anchoring : Anchoring
         Springs to the cell body; none unless given.
+    laws : Law or str
+        The law set; the paper's unless given.
     **values : float or array
         Parameters by name that replace those of the cell, as for `linear.growth_rates`.
 
@@ -82,22 +92,36 @@ def growth_rates(
     Raises
     ------
     InputError
-        For an unknown symmetry or name, values out of range, or shapes that do not broadcast.
+        For an unknown symmetry or name, values out of range, shapes that do not broadcast, or a
+        law under which no edge stands still.
     """
     checked_cell(parameters, anchoring)
+    law = as_law(laws)
     given = checked_values("growth_rates", values)
     checked_shapes(np.zeros(()), given)
+    one_of("symmetry", symmetry, SYMMETRIES)
+    if law != PAPER:
+        return matrix_rates(_matrices(parameters, symmetry, anchoring, given, law))
     damping, restoring, a = _coefficients(parameters, symmetry, anchoring, given)
     half, product = np.broadcast_arrays(0.5 * damping / a, restoring / a)
     return ordered_roots(half, product, half**2 - product)
 
 
 def margin(
-    parameters: Parameters, symmetry: str, anchoring: Anchoring, values: dict[str, np.ndarray]
+    parameters: Parameters,
+    symmetry: str,
+    anchoring: Anchoring,
+    values: dict[str, np.ndarray],
+    laws: Law = PAPER,
 ) -> np.ndarray:
     """Return a number above 0 where a symmetry grows and below 0 where it decays."""
-    damping, restoring, a = _coefficients(parameters, symmetry, anchoring, values)
     shifts = symmetry == "antisymmetric" and anchoring.stiffness == 0.0
+    if laws != PAPER:
+        rates = matrix_rates(_matrices(parameters, symmetry, anchoring, values, laws)).real
+        nearer = np.argmin(np.abs(rates), axis=-1)[..., None]
+        other: np.ndarray = np.take_along_axis(rates, 1 - nearer, axis=-1)[..., 0]
+        return other if shifts else rates[..., 0]
+    damping, restoring, a = _coefficients(parameters, symmetry, anchoring, values)
     by_damping = -damping / a
     grows: np.ndarray = by_damping if shifts else np.maximum(by_damping, -restoring / a)
     return grows
@@ -107,7 +131,6 @@ def _coefficients(
     parameters: Parameters, symmetry: str, anchoring: Anchoring, values: dict[str, np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return those of ``lam`` and 1, and of ``lam**2``, in the quadratic."""
-    one_of("symmetry", symmetry, SYMMETRIES)
     at = {**parameters.to_dict(), **values}
     springs = at["epsilon"] * anchoring.stiffness
     flat = characteristic(parameters, 1.0, {**values, "D": np.zeros(())})
@@ -130,12 +153,49 @@ def _with(flat: Characteristic, stiffness: np.ndarray) -> Characteristic:
     return flat._replace(stiffness=np.asarray(stiffness))
 
 
+def _matrices(
+    parameters: Parameters,
+    symmetry: str,
+    anchoring: Anchoring,
+    values: dict[str, np.ndarray],
+    laws: Law,
+) -> np.ndarray:
+    """Slopes of the still cell in one symmetry, shape (..., 2, 2), for each of the values."""
+    names = list(values)
+    arrays = np.broadcast_arrays(*values.values()) if names else [np.zeros(())]
+    found = np.empty((arrays[0].size, 2, 2))
+    for place, at in enumerate(zip(*(array.flat for array in arrays), strict=True)):
+        p = parameters.replace(**dict(zip(names, map(float, at), strict=True))) if names else None
+        cell = p or parameters
+        rest = rest_state(cell, laws, 0.0)
+        found[place] = _parted(_jacobian(cell, laws, anchoring, (rest, rest)), symmetry)
+    return found.reshape(*arrays[0].shape, 2, 2)
+
+
+def _parted(matrix: np.ndarray, symmetry: str) -> np.ndarray:
+    """Return slopes of the sum or the difference of two equal edges and of what pulls on it.
+
+    Without springs nothing pulls on the difference; its shift stands in, which has the rate 0.
+    """
+    way = 1.0 if symmetry == "symmetric" else -1.0
+    tied = matrix.shape[0] == 4
+    own = matrix[0, 0] + way * matrix[0, 1]
+    if way < 0.0 and not tied:
+        return np.array([[own, 0.0], [0.0, 0.0]])
+    pull = 2 if way > 0.0 else 3
+    return np.array(
+        [[own, matrix[0, pull]], [matrix[pull, 0] + way * matrix[pull, 1], matrix[pull, pull]]]
+    )
+
+
 @checked
-def crawling_states(parameters: Parameters, *, anchoring: Anchoring = FREE) -> list[CrawlingState]:
+def crawling_states(
+    parameters: Parameters, *, anchoring: Anchoring = FREE, laws: Any = PAPER
+) -> list[CrawlingState]:
     """Return the states in which the cell crawls steadily, slowest first.
 
-    The front sticks and the rear slips, ``v_p`` minus and plus the same speed, under one tension.
-    They do not depend on the tension law or the contraction, only their stability does.
+    The front sticks and the rear slips, at the same speed, under one tension. They do not depend on
+    the tension law, only their stability does.
 
     Parameters
     ----------
@@ -143,6 +203,8 @@ def crawling_states(parameters: Parameters, *, anchoring: Anchoring = FREE) -> l
         The cell.
     anchoring : Anchoring
         Springs to the cell body; none unless given. A body that never moves lets nothing crawl.
+    laws : Law or str
+        The law set; the paper's unless given.
 
     Returns
     -------
@@ -150,99 +212,117 @@ def crawling_states(parameters: Parameters, *, anchoring: Anchoring = FREE) -> l
         Empty where the cell cannot crawl; two where it can both stay and crawl.
     """
     checked_cell(parameters, anchoring)
-    p = parameters
+    law = as_law(laws)
     if anchoring.stiffness > 0.0 and anchoring.relaxation == 0.0:
         return []
-    found = all_roots(_force_difference(p, anchoring), 1e-6 * p.v_p, p.v_p, 4001)
-    return [_state(p, anchoring, float(delta)) for delta in found]
+    edges = MovingEdges(parameters, law, _drag(anchoring))
+    states = []
+    for front, rear in _pairs(edges):
+        fastest = min(front.fastest, rear.fastest)
+        slowest = max(1e-6 * fastest, front.velocities[0], rear.velocities[0])
+        difference = _load_difference(edges, front, rear)
+        for speed in all_roots(difference, slowest, fastest, 4001):
+            forces = _forces(edges, front, rear, np.asarray(speed)[None])
+            states.append(_state(parameters, law, anchoring, edges, forces))
+    return sorted(states)
 
 
 def crawling_margin(
-    parameters: Parameters, anchoring: Anchoring, values: dict[str, np.ndarray]
+    parameters: Parameters,
+    anchoring: Anchoring,
+    values: dict[str, np.ndarray],
+    laws: Law = PAPER,
 ) -> np.ndarray:
     """Return a number above 0 where a steadily crawling state exists."""
-    at = {**parameters.to_dict(), **values}
-    shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
+    arrays = np.broadcast_arrays(*values.values())
     if anchoring.stiffness > 0.0 and anchoring.relaxation == 0.0:
-        return np.full(shape, -1.0)
-    drag = _drag(at["epsilon"], anchoring)
-    r_on, zeta_1, r_p = (
-        np.asarray(at[name], float)[..., None] for name in ("r_on", "zeta_1", "r_p")
-    )
-    v_p = r_p * np.log(r_p)
+        return np.full(arrays[0].shape, -1.0)
     part = np.linspace(0.0, 1.0, _PARTS + 1)[1:]
-    slow, fast = (
-        _pull(r_on, zeta_1, off_rates_at(v_p * (1.0 + way * part))) for way in (-1.0, 1.0)
-    )
-    lowest = np.min((fast - slow) / (v_p * part), axis=-1)
-    return np.broadcast_to(-(lowest + drag), shape)
+    margins = np.full(arrays[0].size, -np.inf)
+    for place, at in enumerate(zip(*(array.flat for array in arrays), strict=True)):
+        p = parameters.replace(**dict(zip(values, map(float, at), strict=True)))
+        edges = MovingEdges(p, laws, _drag(anchoring), every=8)
+        for front, rear in _pairs(edges):
+            fastest = min(front.fastest, rear.fastest)
+            speeds = fastest * part
+            speeds = speeds[speeds >= max(front.velocities[0], rear.velocities[0])]
+            loads = (np.interp(speeds, side.velocities, side.loads) for side in (front, rear))
+            rise = np.subtract(*loads) / speeds
+            margins[place] = max(margins[place], float(rise.max(initial=-np.inf)))
+    return margins.reshape(arrays[0].shape)
 
 
-def _pull(r_on: Any, zeta_1: Any, off_rate: np.ndarray) -> np.ndarray:
-    """Friction of an edge whose linkers are in equilibrium."""
-    values = {"phi": np.log(off_rate), "r": off_rate, "n": r_on / (r_on + off_rate)}
-    pull: np.ndarray = PAPER.compiled.evaluate("friction", {**values, "zeta_1": zeta_1})
-    return pull
+def _drag(anchoring: Anchoring) -> float:
+    """Return what the springs pull more on a crawling front than their mean, for its velocity."""
+    return anchoring.stiffness / anchoring.relaxation if anchoring.stiffness > 0.0 else 0.0
 
 
-def _drag(epsilon: Any, anchoring: Anchoring) -> Any:
-    """Return how much more the springs pull on the front, for each unit of the half difference."""
-    if anchoring.stiffness == 0.0:
-        return 0.0
-    return 2.0 * anchoring.stiffness * epsilon / anchoring.relaxation
+def _pairs(edges: MovingEdges) -> Iterator[tuple[Branch, Branch]]:
+    rears = list(edges.rears())
+    return ((front, rear) for front in edges.fronts() for rear in rears)
 
 
-def _force_difference(p: Parameters, anchoring: Anchoring) -> Callable[[np.ndarray], np.ndarray]:
-    """Return the function whose roots are the half differences of crawling edges' velocities."""
-    drag = _drag(p.epsilon, anchoring)
+def _forces(
+    edges: MovingEdges, front: Branch, rear: Branch, speed: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the forces on a bond at the front and the rear of cells of these speeds."""
+    return edges.force(front, speed, inwards=False), edges.force(rear, speed, inwards=True)
 
-    def difference(delta: np.ndarray) -> np.ndarray:
-        slow, fast = (
-            _pull(p.r_on, p.zeta_1, off_rates_at(p.v_p + way * delta)) for way in (-1.0, 1.0)
-        )
-        ratio: np.ndarray = (fast - slow) / delta + drag
+
+def _load_difference(
+    edges: MovingEdges, front: Branch, rear: Branch
+) -> Callable[[np.ndarray], np.ndarray]:
+    """Return the function of the speed whose roots are crawling cells."""
+
+    def difference(speed: np.ndarray) -> np.ndarray:
+        ahead, behind = _forces(edges, front, rear, speed)
+        ratio: np.ndarray = (edges.load(behind) - edges.load(ahead)) / speed
         return ratio
 
     return difference
 
 
-def _state(p: Parameters, anchoring: Anchoring, delta: float) -> CrawlingState:
-    velocities = np.maximum([p.v_p - delta, p.v_p + delta], 0.0)
-    front, rear = (float(r) for r in off_rates_at(velocities))
-    n = tuple(p.r_on / (p.r_on + r) for r in (front, rear))
-    pulls = [float(_pull(p.r_on, p.zeta_1, np.asarray(r))) for r in (front, rear)]
-    rates = np.linalg.eigvals(_jacobian(p, anchoring, (front, rear), (n[0], n[1])))
+def _state(
+    p: Parameters,
+    laws: Law,
+    anchoring: Anchoring,
+    edges: MovingEdges,
+    forces: tuple[np.ndarray, np.ndarray],
+) -> CrawlingState:
+    speed, front = edges.edge(float(forces[0][0]))
+    _, rear = edges.edge(float(forces[1][0]))
+    rates = np.linalg.eigvals(_jacobian(p, laws, anchoring, (front, rear)))
     return CrawlingState(
-        speed=p.epsilon * delta,
-        off_rates=(front, rear),
-        bound_fractions=(n[0], n[1]),
-        tension=0.5 * (pulls[0] + pulls[1]) - p.sigma_c,
+        speed=speed,
+        off_rates=(front.off_rate, rear.off_rate),
+        bound_fractions=(front.bound_fraction, rear.bound_fraction),
+        tension=0.5 * (front.tension + rear.tension),
         growth_rate=float(rates.real.max()),
     )
 
 
 def _jacobian(
-    p: Parameters, anchoring: Anchoring, off_rates: tuple[float, float], n: tuple[float, float]
+    p: Parameters, laws: Law, anchoring: Anchoring, edges: tuple[RestState, RestState]
 ) -> np.ndarray:
     """Slopes of the rates of (n, n, tension[, imbalance]); shifts of the cell are left out."""
     tied = anchoring.stiffness > 0.0
     total = length_stiffness(p) + 0.5 * anchoring.stiffness
     matrix = np.zeros((4, 4))
-    for edge, side in enumerate((1.0, -1.0)):
-        r = off_rates[edge]
-        values = {**local_values(p, PAPER), "phi": float(np.log(r)), "r": r, "n": n[edge]}
-        values |= {"sigma": 0.0, "kappa": 0.0}  # the slopes do not depend on the tension
+    for edge, (side, at) in enumerate(zip((1.0, -1.0), edges, strict=True)):
+        values = {**local_values(p, laws), "phi": at.bond_force, "r": at.off_rate}
+        values |= {"n": at.bound_fraction, "sigma": at.tension, "kappa": 0.0}
 
         def slope(what: str, values: dict[str, float] = values) -> float:
-            return float(PAPER.compiled.evaluate(what, values))
+            return float(laws.compiled.evaluate(what, values))
 
         phi_n = -slope("balance/n") / slope("balance/phi")
         phi_sigma = -slope("balance/sigma") / slope("balance/phi")
+        outwards = slope("velocity/phi") * phi_sigma + slope("velocity/sigma")
         pulled = np.array([1.0, side])
         matrix[edge, edge] = slope("binding/n") + slope("binding/phi") * phi_n
         matrix[edge, 2:] = slope("binding/phi") * phi_sigma * pulled
         springs = np.array([total, 0.5 * anchoring.stiffness * side])
         matrix[2:, edge] = springs * slope("velocity/phi") * phi_n
-        matrix[2:, 2:] += np.outer(springs, slope("velocity/phi") * phi_sigma * pulled)
+        matrix[2:, 2:] += np.outer(springs, outwards * pulled)
     matrix[3, 3] -= anchoring.relaxation
     return matrix if tied else matrix[:3, :3]

@@ -12,6 +12,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from cellcrawl.arguments import checked
+from cellcrawl.data.units import typical_radius
 from cellcrawl.observables import centroid_velocity
 from cellcrawl.observables.inputs import edge_field
 from cellcrawl.plot.colouring import Colouring, colour_bar, colouring
@@ -38,7 +39,6 @@ from cellcrawl.plot.style import (
     paper_figure,
     several_axes,
 )
-from cellcrawl.simulation.units import typical_radius
 
 _ARROW = 4.0  # length of the velocity's arrow, in units of time
 _IN_A_ROW = 6

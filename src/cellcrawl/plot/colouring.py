@@ -13,10 +13,10 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import Normalize
 
+from cellcrawl.data.units import units_of
 from cellcrawl.plot.labels import field_label
 from cellcrawl.plot.scales import SCALES, Limits, extend_for, norm_for, reaches_white, ticks_for
 from cellcrawl.plot.style import colormap_for, figure_of
-from cellcrawl.simulation.units import units_of
 
 
 class Colouring(NamedTuple):

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cellcrawl.arguments import checked
+from cellcrawl.data.units import typical_radius
 from cellcrawl.errors import InputError
 from cellcrawl.observables import centroid_velocity
 from cellcrawl.observables.inputs import edge_field
@@ -27,7 +28,6 @@ from cellcrawl.plot.labels import SERIES, time_label
 from cellcrawl.plot.scales import Limits
 from cellcrawl.plot.style import INK, PAGE, figure_of, on, paper_figure, several_axes
 from cellcrawl.plot.time_series import draw_series, series_values
-from cellcrawl.simulation.units import typical_radius
 from cellcrawl.validation import known_names, real_number, whole_number
 
 _GAP = 0.25  # between two cells, in R_0

@@ -14,11 +14,11 @@ from matplotlib.patches import Polygon
 from matplotlib.transforms import Bbox
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar  # type: ignore[import-untyped]
 
+from cellcrawl.data.units import typical_radius, units_of
 from cellcrawl.observables import speed
 from cellcrawl.plot.colouring import Colouring
 from cellcrawl.plot.labels import length_unit, unit
 from cellcrawl.plot.style import BODY, INK, RIM, on
-from cellcrawl.simulation.units import typical_radius, units_of
 
 
 def segments(points: np.ndarray) -> np.ndarray:

@@ -12,12 +12,12 @@ from matplotlib.colors import to_rgb
 from matplotlib.image import AxesImage
 
 from cellcrawl.data import decode_attribute
+from cellcrawl.data.units import units_of
 from cellcrawl.errors import InputError
 from cellcrawl.laws import as_law
 from cellcrawl.laws.law import PAPER
 from cellcrawl.laws.rest import local_values
 from cellcrawl.parameters import Parameters
-from cellcrawl.simulation.units import units_of
 from cellcrawl.surroundings import Place, as_surroundings
 
 _GROUND: Final = to_rgb("#c9a86a")  # sand: more linkers, more adhesion, stiffer

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from cellcrawl.arguments import checked
+from cellcrawl.data.units import units_of
 from cellcrawl.errors import InputError
 from cellcrawl.linear import evolution
 from cellcrawl.observables import fourier_amplitude
@@ -19,7 +20,6 @@ from cellcrawl.plot.inputs import drawable
 from cellcrawl.plot.labels import time_label
 from cellcrawl.plot.style import COLUMN, INK, axes_or_new, colormap_for, on
 from cellcrawl.simulation.dataset import decode_attribute
-from cellcrawl.simulation.units import units_of
 from cellcrawl.validation import one_of
 
 _SYMBOLS = {"radius": "$|R_k|$ ($R_0$)", "bound_fraction": "$|n_k|$"}

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from cellcrawl.data.units import in_micrometres
 from cellcrawl.errors import InputError
 from cellcrawl.simulation.dataset import check_run
-from cellcrawl.simulation.units import in_micrometres
 from cellcrawl.validation import real_number
 
 _SAME_TIME = 1e-6  # of the time between records

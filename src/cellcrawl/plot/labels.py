@@ -6,8 +6,8 @@ from typing import Final
 
 import xarray as xr
 
+from cellcrawl.data.units import units_of
 from cellcrawl.plot.scales import SCALES
-from cellcrawl.simulation.units import units_of
 
 _WRITTEN: Final[dict[str, str]] = {
     "R_0": "$R_0$",

@@ -11,6 +11,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from cellcrawl.arguments import checked
+from cellcrawl.data.units import typical_radius
 from cellcrawl.errors import InputError
 from cellcrawl.observables import speed
 from cellcrawl.observables.inputs import edge_field
@@ -21,7 +22,6 @@ from cellcrawl.plot.inputs import drawable, record_at
 from cellcrawl.plot.labels import length_unit, time_text
 from cellcrawl.plot.scales import Limits
 from cellcrawl.plot.style import BODY, COLUMN, PAGE, TRACK, axes_or_new, on, paper_figure
-from cellcrawl.simulation.units import typical_radius
 from cellcrawl.validation import real_number, table
 
 _STEPS = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.5, 8.0, 10.0)

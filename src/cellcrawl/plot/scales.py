@@ -17,8 +17,8 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.colors import LogNorm, Normalize, SymLogNorm
 
+from cellcrawl.data.units import DIMENSIONLESS, Units
 from cellcrawl.errors import InputError
-from cellcrawl.simulation.units import DIMENSIONLESS, Units
 from cellcrawl.validation import real_array
 
 Limits = tuple[float, float]

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from cellcrawl import linear, plot
 from cellcrawl.parameters import Parameters
 from cellcrawl.plot.style import GUIDE, PAGE, paper_figure
-from cellcrawl.reproduction.workplace import Workplace
+from cellcrawl.reproduction.workspace import Workspace
 
 _CELL: Final = Parameters(r_on=20, zeta_1=600, D=0.01, sigma_c=100)
 # The text has the cell but not the members of the families: these span the ranges of its Table I.
@@ -24,7 +24,7 @@ _K_MAX = 40
 _LOOK: Final = ("color", "linestyle", "linewidth", "marker", "markersize", "zorder")
 
 
-def make(workplace: Workplace, name: str) -> list[str]:
+def make(workspace: Workspace, name: str) -> list[str]:
     """Draw the families A to D, growth rate above frequency."""
     found, top = [], 0.0
     with paper_figure(PAGE, 4.2) as figure:
@@ -33,7 +33,7 @@ def make(workplace: Workplace, name: str) -> list[str]:
         for letter, column, (parameter, members) in zip(
             "ABCD", panels.T, FAMILIES.items(), strict=True
         ):
-            values = members[1:3] if workplace.quick else members
+            values = members[1:3] if workspace.quick else members
             family: dict[str, Any] = {parameter: values}
             plot.dispersion(_CELL, k_max=_K_MAX, axes=list(column), **family)
             top = max(top, column[0].get_ylim()[1])
@@ -58,9 +58,9 @@ def make(workplace: Workplace, name: str) -> list[str]:
         panels[1, 0].set_ylim(bottom=-2.0)
         _magnify(panels[0, -1])
         figure.align_ylabels(list(panels[:, 0]))
-        workplace.picture(figure)
+        workspace.picture(figure)
     names = ("parameter", "value", "k", "growth_1", "growth_2", "frequency_1", "frequency_2")
-    workplace.table("growth-rates", dict(zip(names, zip(*rows, strict=True), strict=True)))
+    workspace.table("growth-rates", dict(zip(names, zip(*rows, strict=True), strict=True)))
     return found
 
 

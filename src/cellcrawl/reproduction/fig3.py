@@ -8,7 +8,7 @@ import xarray as xr
 from cellcrawl import observables, plot
 from cellcrawl.parameters import Parameters
 from cellcrawl.plot.style import PAGE, paper_figure
-from cellcrawl.reproduction.workplace import Workplace
+from cellcrawl.reproduction.workspace import Workspace
 from cellcrawl.simulation import simulate
 from cellcrawl.starts import RandomPerturbation
 
@@ -18,10 +18,10 @@ _SEEDS = 24
 _FIELDS = ("bound_fraction", "off_rate", "friction", "curvature")
 
 
-def make(workplace: Workplace, name: str) -> list[str]:
+def make(workspace: Workspace, name: str) -> list[str]:
     """Draw the cell at five times over the kymographs of four fields."""
-    end = 1.0 if workplace.quick else 2.0
-    run = workplace.run(_CELL, end, seed=_SEED, save_every=0.01)
+    end = 1.0 if workspace.quick else 2.0
+    run = workspace.run(_CELL, end, seed=_SEED, save_every=0.01)
     times = end * np.linspace(0.0, 1.0, 5)
     with paper_figure(PAGE, 4.6) as figure:
         grid = figure.add_gridspec(2, 1, height_ratios=(1.0, 2.2))
@@ -37,13 +37,13 @@ def make(workplace: Workplace, name: str) -> list[str]:
             panel.set_xlabel("")
         for panel in panels[:, 1]:
             panel.set_ylabel("")
-        workplace.picture(figure)
+        workspace.picture(figure)
     shown = {field: observables.kymograph(run, field) for field in _FIELDS}
-    workplace.data("kymographs", xr.Dataset(shown))
+    workspace.data("kymographs", xr.Dataset(shown))
     fronts = [
-        _fronts(_CELL, seed, end) for seed in range(1, (4 if workplace.quick else _SEEDS) + 1)
+        _fronts(_CELL, seed, end) for seed in range(1, (4 if workspace.quick else _SEEDS) + 1)
     ]
-    workplace.table("fronts", {"seed": np.arange(1, len(fronts) + 1), "fronts": fronts})
+    workspace.table("fronts", {"seed": np.arange(1, len(fronts) + 1), "fronts": fronts})
     counted = ", ".join(f"{fronts.count(n)} have {n}" for n in sorted(set(fronts)))
     return [*_found(run), f"fronts at t = {end:g} from {len(fronts)} random starts: {counted}"]
 

@@ -16,27 +16,27 @@ from cellcrawl.plot.style import PAGE, paper_figure
 from cellcrawl.reproduction.cells import LONG, NINE, Cell
 from cellcrawl.reproduction.movies import SAVE_EVERY
 from cellcrawl.reproduction.plane import R_ON, ZETA_1, keep_table, swept, verdicts
-from cellcrawl.reproduction.workplace import Workplace
+from cellcrawl.reproduction.workspace import Workspace
 from cellcrawl.sweeps import Sweep
 
 _WAVES = (1, 2, 5, 10, 15)
 _LIMITS = (0.1, 0.8)
 
 
-def make(workplace: Workplace, name: str) -> list[str]:
+def make(workspace: Workspace, name: str) -> list[str]:
     """Draw the map with the modes (A), and contours along nine tracks (B-J)."""
-    end = 0.3 * LONG if workplace.quick else LONG
-    sweep = swept(workplace)
-    runs = {cell: workplace.run(cell.parameters, end, save_every=SAVE_EVERY) for cell in NINE}
+    end = 0.3 * LONG if workspace.quick else LONG
+    sweep = swept(workspace)
+    runs = {cell: workspace.run(cell.parameters, end, save_every=SAVE_EVERY) for cell in NINE}
     with paper_figure(PAGE, 9.2) as figure:
         grid = figure.add_gridspec(2, 1, height_ratios=(1.0, 1.4))
-        _draw_map(workplace, sweep, figure.add_subfigure(grid[0]))
+        _draw_map(workspace, sweep, figure.add_subfigure(grid[0]))
         _draw_tracks(runs, figure.add_subfigure(grid[1]))
-        workplace.picture(figure)
-    keep_table(workplace, sweep, ())
+        workspace.picture(figure)
+    keep_table(workspace, sweep, ())
     for cell, run in runs.items():
         columns = {"time": run["time"], "x": run["centroid_x"], "y": run["centroid_y"]}
-        workplace.table(
+        workspace.table(
             f"track-{cell.r_on:g}-{cell.zeta_1:g}",
             {label: values.values for label, values in columns.items()},
         )
@@ -44,7 +44,7 @@ def make(workplace: Workplace, name: str) -> list[str]:
     return [*_found(sweep), f"the nine tracks: {', '.join(named)}"]
 
 
-def _draw_map(workplace: Workplace, sweep: Sweep, panel: SubFigure) -> None:
+def _draw_map(workspace: Workspace, sweep: Sweep, panel: SubFigure) -> None:
     ax = panel.subplots()
     plane = {
         "r_on": np.linspace(R_ON[0] - 2, R_ON[-1] + 2, 109),
@@ -55,7 +55,7 @@ def _draw_map(workplace: Workplace, sweep: Sweep, panel: SubFigure) -> None:
     ax.set_title("A", loc="left", fontweight="bold")
     panel.canvas.draw()  # symbols are sized by the room that the axes have
     plot.diagram(sweep, "r_on", "zeta_1", ax=ax)
-    workplace.data("stability", stability)
+    workspace.data("stability", stability)
 
 
 def _draw_tracks(runs: dict[Cell, xr.Dataset], panel: SubFigure) -> None:

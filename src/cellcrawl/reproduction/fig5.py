@@ -13,7 +13,7 @@ from cellcrawl.plot.colouring import shared_bar
 from cellcrawl.plot.style import PAGE, paper_figure
 from cellcrawl.reproduction.cells import LONG
 from cellcrawl.reproduction.movies import SAVE_EVERY
-from cellcrawl.reproduction.workplace import Workplace
+from cellcrawl.reproduction.workspace import Workspace
 
 
 class _Panel(NamedTuple):
@@ -29,14 +29,14 @@ _LIMITS: Final = (0.1, 0.8)
 _PANELS: Final = (_Panel(24, 540, "rotation", 10, 1), _Panel(26, 600, "zigzag", 12, 2))
 
 
-def make(workplace: Workplace, name: str) -> list[str]:
+def make(workspace: Workspace, name: str) -> list[str]:
     """Draw one period of each, from a minimum of the tension on."""
-    end, found = 0.6 * LONG if workplace.quick else LONG, []
+    end, found = 0.6 * LONG if workspace.quick else LONG, []
     with paper_figure(PAGE, 5.2) as figure:
         axes = figure.subplots(2 * len(_PANELS), 1, height_ratios=(1.4, 1.0) * len(_PANELS))
         for letter, panel, pair in zip("AB", _PANELS, axes.reshape(-1, 2).tolist(), strict=True):
             cell = Parameters(r_on=panel.r_on, zeta_1=panel.zeta_1)
-            run = workplace.run(cell, end, save_every=SAVE_EVERY)
+            run = workspace.run(cell, end, save_every=SAVE_EVERY)
             start, turn = period(run)
             duration = panel.turns * turn
             look: Any = {"shapes": panel.shapes, "limits": _LIMITS, "colorbar": False}
@@ -45,10 +45,10 @@ def make(workplace: Workplace, name: str) -> list[str]:
                 f"{letter}   {panel.mode}, ({panel.r_on:g}, {panel.zeta_1:g})", loc="left"
             )
             stretch = run.sel(time=slice(start, start + duration))
-            _keep(workplace, panel.mode, stretch)
+            _keep(workspace, panel.mode, stretch)
             found.append(f"{panel.mode}: {_found(run, stretch, turn)}")
         shared_bar(axes.tolist(), stretch, "bound_fraction", _LIMITS, shrink=0.5)
-        workplace.picture(figure)
+        workspace.picture(figure)
     return found
 
 
@@ -60,9 +60,9 @@ def period(run: xr.Dataset) -> tuple[float, float]:
     return float(tension["time"][int(np.argmin(tension.values))]), found
 
 
-def _keep(workplace: Workplace, mode: str, stretch: xr.Dataset) -> None:
+def _keep(workspace: Workspace, mode: str, stretch: xr.Dataset) -> None:
     velocity = observables.centroid_velocity(stretch)
-    workplace.table(
+    workspace.table(
         mode,
         {
             "time": stretch["time"].values,
@@ -72,7 +72,7 @@ def _keep(workplace: Workplace, mode: str, stretch: xr.Dataset) -> None:
             "left_right_asymmetry": observables.left_right_asymmetry(stretch).values,
         },
     )
-    workplace.data(f"{mode}-edge", stretch[["x", "y", "bound_fraction"]])
+    workspace.data(f"{mode}-edge", stretch[["x", "y", "bound_fraction"]])
 
 
 def _found(run: xr.Dataset, stretch: xr.Dataset, turn: float) -> str:

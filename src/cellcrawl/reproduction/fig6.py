@@ -14,7 +14,7 @@ from cellcrawl.plot.labels import time_label
 from cellcrawl.plot.style import PAGE, RIM, paper_figure
 from cellcrawl.plot.time_series import draw_series
 from cellcrawl.reproduction.cells import through
-from cellcrawl.reproduction.workplace import Workplace
+from cellcrawl.reproduction.workspace import Workspace
 
 GLIDES: Final = (16.0, 580.0)
 ZIGZAGS: Final = (30.0, 580.0)
@@ -42,19 +42,19 @@ def routes(scale: float = 1.0) -> dict[str, Schedule]:
     return {**dict(ramps), f"by (24, 540), {there:g} to {back:g}": through(by)}
 
 
-def make(workplace: Workplace, name: str) -> list[str]:
+def make(workspace: Workspace, name: str) -> list[str]:
     """Draw contours around the jump, and tension over time on every route."""
-    scale = 0.1 if workplace.quick else 1.0
+    scale = 0.1 if workspace.quick else 1.0
     end = 100.0 * scale
     first = Parameters(r_on=GLIDES[0], zeta_1=GLIDES[1])
     runs = {
-        label: workplace.run(first, end, schedule=schedule, save_every=0.1)
-        for label, schedule in list(routes(scale).items())[: 2 if workplace.quick else None]
+        label: workspace.run(first, end, schedule=schedule, save_every=0.1)
+        for label, schedule in list(routes(scale).items())[: 2 if workspace.quick else None]
     }
-    fresh = workplace.run(first.replace(r_on=ZIGZAGS[0]), end, save_every=0.1)
+    fresh = workspace.run(first.replace(r_on=ZIGZAGS[0]), end, save_every=0.1)
     abrupt = next(iter(runs.values()))
     window = abrupt.sel(time=slice(10.0 * scale, 70.0 * scale))
-    round_ones = _from_round(workplace, scale)
+    round_ones = _from_round(workspace, scale)
     with paper_figure(PAGE, 1.9 + 0.62 * len(runs)) as figure:
         grid = figure.add_gridspec(1, 2, width_ratios=(1.0, 1.7))
         left = figure.add_subfigure(grid[0]).subplots()
@@ -68,13 +68,13 @@ def make(workplace: Workplace, name: str) -> list[str]:
         lower.set_xlim(20.0 * scale, 45.0 * scale)
         for panel, letter in ((left, "A"), (upper[0], "B"), (lower, "C")):
             panel.set_title(letter, loc="left", fontweight="bold")
-        workplace.picture(figure)
+        workspace.picture(figure)
     tension = {label: run["tension"] for label, run in {**runs, _FRESH: fresh}.items()}
     columns = {label: values.values for label, values in tension.items()}
-    workplace.table("tension", {"time": fresh["time"].values, **columns})
+    workspace.table("tension", {"time": fresh["time"].values, **columns})
     columns = {label: run["tension"].values for label, run in round_ones.items()}
     times = next(iter(round_ones.values()))["time"].values
-    workplace.table("tension-from-round", {"time": times, **columns})
+    workspace.table("tension-from-round", {"time": times, **columns})
     return [*_found(tension, end), *_found_from_round(round_ones, end)]
 
 
@@ -101,14 +101,14 @@ def _draw_from_round(panel: Axes, runs: dict[str, xr.Dataset]) -> None:
     panel.legend(frameon=False, ncols=1, loc="upper right", handlelength=1.4)
 
 
-def _from_round(workplace: Workplace, scale: float) -> dict[str, xr.Dataset]:
+def _from_round(workspace: Workspace, scale: float) -> dict[str, xr.Dataset]:
     """Return runs of a nearly round glider made to zigzag: by a jump, slowly, by the other law."""
     runs = {}
     for law, over in (("printed", 0.0), ("printed", 10.0), ("consistent", 0.0)):
         cell = Parameters(r_on=_ROUND[0], zeta_1=_ROUND[1], elasticity=law)
         schedule = through([(scale * 25, _ROUND), (scale * (25 + over), _ZIGZAGS_TOO)])
         how = f"over {scale * over:g}" if over else "abrupt"
-        runs[f"{how}, {law} law"] = workplace.run(
+        runs[f"{how}, {law} law"] = workspace.run(
             cell, 100.0 * scale, schedule=schedule, save_every=0.04, nodes=64
         )
     return runs

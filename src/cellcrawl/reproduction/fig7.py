@@ -9,7 +9,7 @@ import numpy as np
 from cellcrawl import plot
 from cellcrawl.plot.style import PAGE, paper_figure
 from cellcrawl.reproduction.plane import keep_table, swept
-from cellcrawl.reproduction.workplace import Workplace
+from cellcrawl.reproduction.workspace import Workspace
 from cellcrawl.sweeps import Sweep
 
 _MEASURES: Final = {
@@ -21,9 +21,9 @@ _SYMBOL: Final = 3.2  # points: the map stays in sight
 _MOVING: Final = ("gliding", "rotational", "zigzag", "other")
 
 
-def make(workplace: Workplace, name: str) -> list[str]:
+def make(workspace: Workspace, name: str) -> list[str]:
     """Draw the three maps, averages over t = 5 to the end and all whole cells of a point."""
-    sweep = swept(workplace)
+    sweep = swept(workspace)
     with paper_figure(PAGE, 6.6) as figure:
         panels = figure.subplots(len(_MEASURES), 1, sharex=True)
         for letter, panel, measure in zip("ABC", panels, _MEASURES, strict=True):
@@ -34,8 +34,8 @@ def make(workplace: Workplace, name: str) -> list[str]:
             plot.diagram(sweep, "r_on", "zeta_1", size=_SYMBOL, ax=panel, legend=letter == "C")
         for panel in panels[:-1]:
             panel.set_xlabel("")
-        workplace.picture(figure)
-    keep_table(workplace, sweep, tuple(_MEASURES))
+        workspace.picture(figure)
+    keep_table(workspace, sweep, tuple(_MEASURES))
     return _found(sweep)
 
 

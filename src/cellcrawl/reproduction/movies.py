@@ -9,27 +9,27 @@ import xarray as xr
 
 from cellcrawl import classify, observables
 from cellcrawl.reproduction.cells import LONG, NINE, TRANSITIONS
-from cellcrawl.reproduction.workplace import Workplace
+from cellcrawl.reproduction.workspace import Workspace
 
 SAVE_EVERY = 0.1
 _SETTLES = 10.0  # time after a change that is left out when the mode is named
 
 
-def make(workplace: Workplace, name: str) -> list[str]:
+def make(workspace: Workspace, name: str) -> list[str]:
     """Film one of them, ten seconds long."""
     number = int(name.removeprefix("movie-s")) - 1
-    end = 0.1 * LONG if workplace.quick else LONG
+    end = 0.1 * LONG if workspace.quick else LONG
     if number < len(NINE):
-        run = workplace.run(NINE[number].parameters, end, save_every=SAVE_EVERY)
+        run = workspace.run(NINE[number].parameters, end, save_every=SAVE_EVERY)
     else:
         change = TRANSITIONS[number - len(NINE)]
         scale = end / LONG
         change = change._replace(time=change.time * scale, over=change.over * scale)
-        run = workplace.run(change.parameters, end, schedule=change.schedule, save_every=SAVE_EVERY)
-    options: dict[str, Any] = {"seconds": 1.0, "size": (320, 240)} if workplace.quick else {}
-    workplace.movie(run, **options)
+        run = workspace.run(change.parameters, end, schedule=change.schedule, save_every=SAVE_EVERY)
+    options: dict[str, Any] = {"seconds": 1.0, "size": (320, 240)} if workspace.quick else {}
+    workspace.movie(run, **options)
     centre = np.column_stack([run["centroid_x"].values, run["centroid_y"].values])
-    workplace.table(
+    workspace.table(
         "track",
         {
             "time": run["time"].values,

@@ -7,7 +7,7 @@ from collections import Counter
 from typing import Any, Final
 
 from cellcrawl.reproduction.cells import LONG
-from cellcrawl.reproduction.workplace import Workplace
+from cellcrawl.reproduction.workspace import Workspace
 from cellcrawl.sweeps import Sweep
 
 R_ON: Final = tuple(range(10, 61, 2))
@@ -16,13 +16,13 @@ SEEDS: Final = (1, 2, 3, 4, 5)
 MIXED: Final = "mixed"
 
 
-def swept(workplace: Workplace) -> Sweep:
+def swept(workspace: Workspace) -> Sweep:
     """Return the sweep of the paper's 26 by 11 points, five seeds each, made or found."""
-    if workplace.quick:
+    if workspace.quick:
         axes: dict[str, Any] = {"r_on": [16, 26, 36], "zeta_1": [560, 600], "seed": [1, 2]}
-        return workplace.sweep("plane-quick", axes, t_end=0.3 * LONG)
+        return workspace.sweep("plane-quick", axes, t_end=0.3 * LONG)
     axes = {"r_on": R_ON, "zeta_1": ZETA_1, "seed": SEEDS}
-    return workplace.sweep("plane", axes, t_end=LONG)
+    return workspace.sweep("plane", axes, t_end=LONG)
 
 
 def verdicts(sweep: Sweep) -> dict[tuple[float, float], tuple[str, Counter[str]]]:
@@ -40,7 +40,7 @@ def verdicts(sweep: Sweep) -> dict[tuple[float, float], tuple[str, Counter[str]]
     return found
 
 
-def keep_table(workplace: Workplace, sweep: Sweep, measures: tuple[str, ...]) -> None:
+def keep_table(workspace: Workspace, sweep: Sweep, measures: tuple[str, ...]) -> None:
     """Write one row a point: the verdict, how many runs show each mode, the mean of measures."""
     found = verdicts(sweep)
     modes = sorted({mode for _, count in found.values() for mode in count})
@@ -57,7 +57,7 @@ def keep_table(workplace: Workplace, sweep: Sweep, measures: tuple[str, ...]) ->
             _mean([row[name] for row in whole if (row["r_on"], row["zeta_1"]) == point])
             for point in found
         ]
-    workplace.table("points", columns)
+    workspace.table("points", columns)
 
 
 def _mean(values: list[float | None]) -> float | str:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from cellcrawl.reproduction.workplace import Workplace
+    from cellcrawl.reproduction.workspace import Workspace
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Recipe:
     seconds : float
         About how long that takes on one core, with what others share still to be made.
     module : str
-        The module of this package whose function ``make(workplace, name)`` makes it and returns
+        The module of this package whose function ``make(workspace, name)`` makes it and returns
         what was found, a line each.
     """
 
@@ -39,10 +39,10 @@ class Recipe:
     seconds: float
     module: str
 
-    def make(self, workplace: Workplace) -> list[str]:
+    def make(self, workspace: Workspace) -> list[str]:
         """Make everything; return what was found, a line each."""
-        make: Callable[[Workplace, str], list[str]] = self._module().make
-        return make(workplace, self.name)
+        make: Callable[[Workspace, str], list[str]] = self._module().make
+        return make(workspace, self.name)
 
     def identity(self, *choices: Any) -> str:
         """Return a hash of these choices, of the recipe and of the code that decides results."""

@@ -14,7 +14,7 @@ from cellcrawl.reproduction.registry import recipes_named
 from cellcrawl.validation import one_of, whole_number
 
 if TYPE_CHECKING:
-    from cellcrawl.reproduction.workplace import Workplace
+    from cellcrawl.reproduction.workspace import Workspace
 
 FORMATS: Final = ("png", "pdf", "svg")
 
@@ -85,15 +85,15 @@ def reproduce(
 def _each(
     recipes: list[Recipe], root: Path, choices: dict[str, Any], again: bool, progress: bool
 ) -> Iterator[Made]:
-    from cellcrawl.reproduction.workplace import Workplace
+    from cellcrawl.reproduction.workspace import Workspace
 
     with locked(root / ".lock", root):
         for recipe in recipes:
-            place = Workplace(root, recipe.name, progress=progress, **choices)
+            place = Workspace(root, recipe.name, progress=progress, **choices)
             yield _made(recipe, place, choices, again)
 
 
-def _made(recipe: Recipe, place: Workplace, choices: dict[str, Any], again: bool) -> Made:
+def _made(recipe: Recipe, place: Workspace, choices: dict[str, Any], again: bool) -> Made:
     from cellcrawl.simulation.dataset import package_version
 
     began = clock.monotonic()

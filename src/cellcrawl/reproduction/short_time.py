@@ -8,7 +8,7 @@ import xarray as xr
 from cellcrawl import linear, observables, plot
 from cellcrawl.parameters import Parameters
 from cellcrawl.plot.style import PAGE, paper_figure
-from cellcrawl.reproduction.workplace import Workplace
+from cellcrawl.reproduction.workspace import Workspace
 
 _CELL = Parameters(r_on=25, zeta_1=600)
 _WAVES = (1, 2, 5, 10, 15, 20)
@@ -16,13 +16,13 @@ _AMPLITUDES = (1e-4, 1e-6)
 _COMPARED = 0.4
 
 
-def make(workplace: Workplace, name: str) -> list[str]:
+def make(workspace: Workspace, name: str) -> list[str]:
     """Draw amplitudes over time from the paper's start and from one a hundred times smaller."""
-    end, found = 0.5 if workplace.quick else 0.8, []
+    end, found = 0.5 if workspace.quick else 0.8, []
     with paper_figure(PAGE, 2.9) as figure:
         panels = figure.subplots(1, len(_AMPLITUDES))
         for panel, letter, amplitude in zip(panels, "AB", _AMPLITUDES, strict=True):
-            run = workplace.run(_CELL, end, save_every=0.01, amplitude=amplitude, rtol=1e-6)
+            run = workspace.run(_CELL, end, save_every=0.01, amplitude=amplitude, rtol=1e-6)
             plot.growth(run, _WAVES, ax=panel, legend=letter == "B")
             panel.set_title(
                 f"{letter}   amplitudes up to $10^{{{round(np.log10(amplitude))}}}$", loc="left"
@@ -31,12 +31,12 @@ def make(workplace: Workplace, name: str) -> list[str]:
                 observables.fourier_amplitude(run, name, _WAVES)
                 for name in ("radius", "bound_fraction")
             ]
-            workplace.data(f"amplitudes-{amplitude:g}", _parts(*measured))
+            workspace.data(f"amplitudes-{amplitude:g}", _parts(*measured))
             found.append(
                 f"from amplitudes up to {amplitude:g}, error of theory at "
                 f"t = {_COMPARED:g}: {_errors(*measured)}"
             )
-        workplace.picture(figure)
+        workspace.picture(figure)
     return found
 
 

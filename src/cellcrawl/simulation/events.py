@@ -7,17 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cellcrawl.curve import Crossing, first_crossing
-from cellcrawl.data import MODEL_ENDINGS, RESUMABLE, STATUSES
 from cellcrawl.solvers import Breakdown, Solver
-
-__all__ = [
-    "MODEL_ENDINGS",
-    "RESUMABLE",
-    "STATUSES",
-    "CrossingFound",
-    "crossing_at",
-    "locate_crossing",
-]
 
 _TIME_RESOLUTION = 1e-4
 

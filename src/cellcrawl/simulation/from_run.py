@@ -12,10 +12,10 @@ import xarray as xr
 from cellcrawl.arguments import checked
 from cellcrawl.curve import Curve, fourier
 from cellcrawl.data import records_with
+from cellcrawl.data.units import DIMENSIONLESS, units_of
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import Parameters
 from cellcrawl.simulation.storage import open_run
-from cellcrawl.simulation.units import DIMENSIONLESS, units_of
 from cellcrawl.starts import CellState
 from cellcrawl.validation import whole_number
 

@@ -9,13 +9,12 @@ import numpy as np
 import xarray as xr
 
 from cellcrawl.arguments import checked
-from cellcrawl.data import FIELDS, SCHEMA_VERSION, decode_attribute
+from cellcrawl.data import FIELDS, RESUMABLE, SCHEMA_VERSION, decode_attribute
 from cellcrawl.errors import CellcrawlError, InputError, StorageError
 from cellcrawl.laws import as_law
 from cellcrawl.laws.law import PAPER
 from cellcrawl.parameters import CONSTANT, Parameters, Schedule
 from cellcrawl.simulation.description import DEFAULT_SOLVER, RunDescription, solver_named
-from cellcrawl.simulation.events import RESUMABLE
 from cellcrawl.simulation.following import Follower, Kept, same_time
 from cellcrawl.simulation.progress import Progress, make_progress
 from cellcrawl.simulation.recorder import Checkpoint, MemoryRecorder, Recorder, StoreRecorder

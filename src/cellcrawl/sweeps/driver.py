@@ -10,7 +10,7 @@ from typing import Any, Self
 
 from cellcrawl.arguments import checked
 from cellcrawl.sweeps import worker
-from cellcrawl.sweeps.crew import Crew, Todo
+from cellcrawl.sweeps.dispatch import Dispatcher, Todo
 from cellcrawl.sweeps.executors import executor_for
 from cellcrawl.sweeps.grid import Grid, as_grid
 from cellcrawl.sweeps.progress import RunsBar
@@ -149,8 +149,8 @@ class Sweeping:
             return
         if self._pool is None:
             self._pool = self._open.enter_context(executor_for(*self._given))
-        crew = Crew(self.store, self._pool, self._keep, self._driver, self._execute)
-        self.interrupted = crew.work(todo, RunsBar(progress, len(which), todo.left))
+        dispatcher = Dispatcher(self.store, self._pool, self._keep, self._driver, self._execute)
+        self.interrupted = dispatcher.work(todo, RunsBar(progress, len(which), todo.left))
 
     def tidy(self) -> None:
         """Put many small files of rows together, once all is done."""

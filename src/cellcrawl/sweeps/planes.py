@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from cellcrawl.data import MODEL_ENDINGS
 from cellcrawl.errors import InputError
 from cellcrawl.modes import MODES
 from cellcrawl.parameters import DESCRIPTIONS
-from cellcrawl.simulation.events import MODEL_ENDINGS
 from cellcrawl.sweeps.measures import MEASURES
 from cellcrawl.validation import known_names
 

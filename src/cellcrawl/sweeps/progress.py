@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from types import TracebackType
 from typing import Any, Self
 
-from cellcrawl.simulation.events import MODEL_ENDINGS
+from cellcrawl.data import MODEL_ENDINGS
 
 
 class RunsBar:

@@ -12,8 +12,8 @@ import numpy as np
 import xarray as xr
 
 from cellcrawl.arguments import checked
+from cellcrawl.data import MODEL_ENDINGS
 from cellcrawl.errors import InputError
-from cellcrawl.simulation.events import MODEL_ENDINGS
 from cellcrawl.sweeps.axes import OPTIONS, plain, value_of
 from cellcrawl.sweeps.grid import Grid, united
 from cellcrawl.sweeps.kept import read_kept

@@ -51,7 +51,7 @@ class Todo:
         return tuple((run_key(run, self._keep), run) for run in runs)
 
 
-class Crew:
+class Dispatcher:
     """Workers at work for one driver, and what to do when they die."""
 
     def __init__(

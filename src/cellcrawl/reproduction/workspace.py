@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _RECORD: Final = "about.json"
 
 
-class Workplace:
+class Workspace:
     """A recipe's folder, and what it may ask for; keeps the list of the files it has written.
 
     Parameters
