@@ -16,7 +16,6 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -29,29 +28,19 @@ from cellcrawl.infer.cells import Cell
 from cellcrawl.infer.trained import Calibration, Trained, train
 
 sys.path.insert(0, str(Path(__file__).parent))
-from infer_cells import TIME, Camera, Fresh, at_points, fresh
+from infer_cells import (
+    CAMERAS,
+    MICROSCOPES,
+    TIME,
+    Camera,
+    Fresh,
+    at_points,
+    described,
+    filmed,
+    fresh,
+)
 
 RESULTS = Path(__file__).parent / "results" / "infer.json"
-PIXELS = Camera(pixel=0.1, error=0.05, frame=0.5)
-CAMERAS = {
-    "outlines, noise-free": Camera(),
-    "track, noise-free": Camera(outlines=False),
-    "outlines, pixel 0.1, error 0.05, frames of 0.5": PIXELS,
-    "track, error 0.05, frames of 0.5": replace(PIXELS, pixel=0.0, outlines=False),
-}
-MICROSCOPES = {
-    "pixel 0.1, error 0.05, frame 0.5, length 37": PIXELS,
-    "frame 0.25": replace(PIXELS, frame=0.25),
-    "frame 1": replace(PIXELS, frame=1.0),
-    "frame 2": replace(PIXELS, frame=2.0, length=36.0),
-    "pixel 0.05": replace(PIXELS, pixel=0.05),
-    "pixel 0.2": replace(PIXELS, pixel=0.2),
-    "pixel 0.4": replace(PIXELS, pixel=0.4),
-    "no error": replace(PIXELS, error=0.0),
-    "error 0.1": replace(PIXELS, error=0.1),
-    "length 18": replace(PIXELS, length=18.0),
-    "length 9": replace(PIXELS, length=9.0),
-}
 CHANGES = (1.2, 1.0 / 1.2)
 TREATED = 20
 
@@ -87,11 +76,6 @@ def taught_for(bank: Any, cells: list[Cell], camera: Camera, looks: int = 3) -> 
     return train(bank, microscope, looks)
 
 
-def filmed(cells: list[Fresh], camera: Camera) -> list[Cell]:
-    """Return the films of cells that live as long."""
-    return [one.cell(camera, i) for i, one in enumerate(cells)]  # type: ignore[misc]
-
-
 def calibration(taught: Trained, cells: list[Fresh], found: list[Any]) -> Calibration:
     """Return how posteriors of fresh cells stand to the truth."""
     ranges = taught.view.ranges
@@ -102,18 +86,6 @@ def calibration(taught: Trained, cells: list[Fresh], found: list[Any]) -> Calibr
     mean = np.array([one.weight @ one.part for one in posterior])
     rank = np.array([one.weight @ (one.part < t) for one, t in zip(posterior, truth, strict=True)])
     return Calibration(taught.view.names, truth, mean, rank)
-
-
-def described(one: Calibration) -> dict[str, Any]:
-    """Return a calibration as plain values by parameter."""
-    return {
-        name: {
-            "R2": round(float(one.recovered[i]), 4),
-            "coverage": {f"{level:g}": round(float(c[i]), 4) for level, c in one.levels.items()},
-            "rank p": round(float(one.evenness[i]), 4),
-        }
-        for i, name in enumerate(one.names)
-    }
 
 
 def cameras(at: Measuring) -> dict[str, Any]:
@@ -127,6 +99,7 @@ def cameras(at: Measuring) -> dict[str, Any]:
         result[name] = {
             "fresh": described(calibration(taught, at.cells, found)),
             "set apart": described(taught.calibration),
+            "cells": len(found),
             "false alarms": round(float((away > 1).mean()), 4),
             "seconds of training": round(seconds, 1),
         }
@@ -307,8 +280,6 @@ def main() -> None:
             "runs": len(at.bank),
             "seconds": round(time.perf_counter() - began, 1),
         }
-        if part not in ("choice", "microscope"):
-            told["cells"] = asked.cells
         write(asked.output, at.bank, part, {**told, "found": found})
 
 

@@ -5,7 +5,7 @@ A film begins anywhere in a run, as a look at a bank does, and a run is as long 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ import xarray as xr
 import cellcrawl as cc
 from cellcrawl.infer import films
 from cellcrawl.infer.cells import Cell, cells_of
+from cellcrawl.infer.trained import Calibration
 
 TIME = (0.625, 1.6, "log")  # of 1/k_off0: as wide as the paper's prior, in its own unit
 LENGTH = 37.0  # of a film
@@ -34,6 +35,28 @@ class Camera:
     def frames(self) -> int:
         """Number of frames."""
         return 1 + round(self.length / self.frame)
+
+
+PIXELS = Camera(pixel=0.1, error=0.05, frame=0.5)
+CAMERAS = {
+    "outlines, noise-free": Camera(),
+    "track, noise-free": Camera(outlines=False),
+    "outlines, pixel 0.1, error 0.05, frames of 0.5": PIXELS,
+    "track, error 0.05, frames of 0.5": replace(PIXELS, pixel=0.0, outlines=False),
+}
+MICROSCOPES = {
+    "pixel 0.1, error 0.05, frame 0.5, length 37": PIXELS,
+    "frame 0.25": replace(PIXELS, frame=0.25),
+    "frame 1": replace(PIXELS, frame=1.0),
+    "frame 2": replace(PIXELS, frame=2.0, length=36.0),
+    "pixel 0.05": replace(PIXELS, pixel=0.05),
+    "pixel 0.2": replace(PIXELS, pixel=0.2),
+    "pixel 0.4": replace(PIXELS, pixel=0.4),
+    "no error": replace(PIXELS, error=0.0),
+    "error 0.1": replace(PIXELS, error=0.1),
+    "length 18": replace(PIXELS, length=18.0),
+    "length 9": replace(PIXELS, length=9.0),
+}
 
 
 @dataclass(frozen=True)
@@ -127,3 +150,20 @@ def at_points(
             continue
         found.append(one)
     return found
+
+
+def filmed(cells: list[Fresh], camera: Camera) -> list[Cell]:
+    """Return the films of cells that live as long."""
+    return [one.cell(camera, i) for i, one in enumerate(cells)]  # type: ignore[misc]
+
+
+def described(one: Calibration) -> dict[str, Any]:
+    """Return a calibration as plain values by parameter."""
+    return {
+        name: {
+            "R2": round(float(one.recovered[i]), 4),
+            "coverage": {f"{level:g}": round(float(c[i]), 4) for level, c in one.levels.items()},
+            "rank p": round(float(one.evenness[i]), 4),
+        }
+        for i, name in enumerate(one.names)
+    }

@@ -32,6 +32,8 @@ def page(result: dict[str, Any]) -> str:
         "begin anywhere in a run. What falls short of the aim is in bold.",
         "",
     ]
+    if "note" in result:
+        said += [result["note"], ""]
     for part, tables in (
         ("cameras", _cameras),
         ("methods", _methods),
@@ -40,8 +42,7 @@ def page(result: dict[str, Any]) -> str:
         ("drug", _drug),
     ):
         if part in result:
-            of = f"{result[part]['cells']} fresh cells. " if part == "cameras" else ""
-            said += [*([of, ""] if of else []), *tables(result[part]["found"]), ""]
+            said += [*tables(result[part]["found"]), ""]
     if "microscope" in result:
         said += [
             "## What a microscope must deliver",
@@ -80,7 +81,8 @@ def _cameras(found: dict[str, Any]) -> list[str]:
         alarms = camera["false alarms"]
         told = [_bold(f"{v:.3f}", v <= 0.01) for v in p]
         said.append(_row(name, [*told, _bold(f"{alarms:.1%}", alarms > 0.05)]))
-    return said
+    cells = "; ".join(f"{name}: {one['cells']}" for name, one in found.items())
+    return [*said, "", f"Fresh cells: {cells}."]
 
 
 def _recovered(name: str, fresh: dict[str, Any], aims: tuple[float, ...] | None) -> str:
