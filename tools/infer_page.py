@@ -88,10 +88,7 @@ def _cameras(found: dict[str, Any]) -> list[str]:
 def _recovered(name: str, fresh: dict[str, Any], aims: tuple[float, ...] | None) -> str:
     values = [fresh[one]["R2"] for one in NAMES]
     least = aims or (float("-inf"),) * len(NAMES)
-    # Against what is shown: 0.95 is not short of 0.95.
-    return _row(
-        name, [_bold(f"{v:.2f}", round(v, 2) < a) for v, a in zip(values, least, strict=True)]
-    )
+    return _row(name, [_bold(f"{v:.3f}", v < a) for v, a in zip(values, least, strict=True)])
 
 
 def _held(name: str, fresh: dict[str, Any]) -> str:
