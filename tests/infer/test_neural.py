@@ -21,7 +21,9 @@ def kept(bank, tmp_path_factory):
     path = tmp_path_factory.mktemp("network") / "network.npz"
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(neural, "_EPOCHS", 20)
+        patch.chdir(path.parent)
         fit = cc.infer.fit(cell(), bank, method="npe", network=path, **UNIT)
+    assert [one.name for one in path.parent.iterdir()] == [path.name]  # and no logs
     return fit, path
 
 

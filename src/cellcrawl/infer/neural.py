@@ -38,6 +38,18 @@ _ALIKE: Final = 0.02  # relative: microscopes that differ less are one
 _kept: dict[tuple[int, int], tuple[Any, Any]] = {}  # views with their networks, for the next cell
 
 
+class _Silent:
+    """What sbi tells of its training, kept nowhere: it would write to the folder one is in."""
+
+    log_dir = None
+
+    def log_metric(self, name: str, value: float, step: int | None = None) -> None: ...
+    def log_metrics(self, metrics: dict[str, float], step: int | None = None) -> None: ...
+    def log_params(self, params: dict[str, Any]) -> None: ...
+    def add_figure(self, name: str, figure: Any, step: int | None = None) -> None: ...
+    def flush(self) -> None: ...
+
+
 class Estimate:
     """A trained network, that gives the posterior of a vector of summaries at once."""
 
@@ -99,6 +111,7 @@ def train_estimate(taught: Trained, seed: int = 0) -> Estimate:
                 "maf", hidden_features=_HIDDEN, num_transforms=_TRANSFORMS
             ),
             show_progress_bars=False,
+            tracker=_Silent(),
         )
         network = trainer.append_simulations(theta, x).train(
             training_batch_size=min(256, max(len(rows) // 8, 16)), max_num_epochs=_EPOCHS
