@@ -1,16 +1,21 @@
 """Measure what a fit finds of fresh cells: recovery, coverage, calibration, alarms, a drug.
 
-``python benchmarks/infer.py BANK [--cells 300] [--trials 100] [--workers 2]`` writes
-``benchmarks/results/infer.json``. Fresh cells are new runs of the bank's prior, with other seeds;
-pixels are those of `cellcrawl.observe`, not those that the bank is seen through.
+``python benchmarks/infer.py BANK [PART ...]`` adds the parts named, or all, to
+``benchmarks/results/infer.json``: ``cameras``, ``alarms``, ``drug``, ``methods`` (needs sbi),
+``choice`` (with ``--other BANK``, of another law), ``microscope`` (how well each parameter is told
+by frame, pixel and length). Fresh cells are new runs of the bank's prior; pixels are those of
+`cellcrawl.observe`.
 """
 
 from __future__ import annotations
 
 import argparse
+import functools
 import json
+import sys
 import tempfile
 import time
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -18,94 +23,57 @@ import numpy as np
 
 import cellcrawl as cc
 from cellcrawl.bench import machine
-from cellcrawl.infer import approximate, films
-from cellcrawl.infer.cells import Cell, cells_of
-from cellcrawl.infer.fitting import microscope_of
-from cellcrawl.infer.microscope import summaries_of
+from cellcrawl.infer import fitting
+from cellcrawl.infer.cells import Cell
 from cellcrawl.infer.trained import Calibration, Trained, train
 
+sys.path.insert(0, str(Path(__file__).parent))
+from infer_cells import (
+    CAMERAS,
+    MICROSCOPES,
+    TIME,
+    Camera,
+    Fresh,
+    at_points,
+    described,
+    filmed,
+    fresh,
+)
+
 RESULTS = Path(__file__).parent / "results" / "infer.json"
-TIME = (0.625, 1.6, "log")  # of 1/k_off0: as wide as the paper's prior, in its own unit
-FRAME = 0.5
-FRAMES = 75
-CAMERAS = {
-    "outlines, noise-free": (True, 0.0, 0.0),
-    "track, noise-free": (False, 0.0, 0.0),
-    "outlines, pixel 0.1, error 0.05": (True, 0.1, 0.05),
-    "track, error 0.05": (False, 0.0, 0.05),
-}
+CHANGES = (1.2, 1.0 / 1.2)
+TREATED = 20
 
 
-class Fresh:
-    """A new run and the unit of time it is filmed in."""
+class Measuring:
+    """A bank, and what is made once for several parts."""
 
-    def __init__(self, run: Any, point: np.ndarray, unit: float, begin: float) -> None:
-        self.run, self.point, self.unit, self.begin = run, point, unit, begin
+    def __init__(self, asked: argparse.Namespace) -> None:
+        self.asked = asked
+        self.bank = cc.infer.open_bank(asked.bank)
 
-    def cell(self, outlines: bool, pixel: float, error: float, seed: int) -> Cell:
-        """Film it: FRAMES frames, FRAME apart in the unit of the film."""
-        late = self.run.sel(time=slice(self.begin, None))
-        late = late.assign_coords(time=(late["time"] - late["time"][0]) * self.unit + 1e3)
-        until = late.sel(time=slice(None, 1e3 + FRAME * (FRAMES - 1) + 1e-9))
-        if pixel > 0.0:
-            (cell,) = cells_of(cc.observe(until, pixel=pixel, error=error, frame=FRAME, seed=seed))
-            return cell
-        at = until["time"].values[0] + FRAME * np.arange(FRAMES)
-        even = until.interp(time=at, kwargs={"fill_value": "extrapolate"})
-        (cell,) = cells_of(even)
-        if error > 0.0:
-            noise = np.random.default_rng(seed).standard_normal((2, len(cell.path))) * error
-            cell = Cell(cell.name, cell.frame, cell.path + noise[0] + 1j * noise[1], cell.modes,
-                        0.0, True)  # fmt: skip
-        return cell if outlines else cell.track_alone()
+    @functools.cached_property
+    def cells(self) -> list[Fresh]:
+        """Fresh cells of the prior."""
+        return fresh(self.bank, self.asked.cells, 1000, Camera())
 
+    @functools.cache  # noqa: B019
+    def taught(self, camera: Camera) -> Trained:
+        """Return the bank seen through a camera."""
+        cell = self.cells[0].cell(camera)
+        assert cell is not None
+        return taught_for(self.bank, [cell], camera)
 
-def fresh(
-    bank: Any, count: int, seed: int, change: dict[str, float] | None = None,
-    fixed: np.ndarray | None = None, **world: Any,
-) -> list[Fresh]:  # fmt: skip
-    """Return new moving cells of the prior, or of one point, that live as long as the film."""
-    found: list[Fresh] = []
-    names = bank.prior.cell_names
-    span = cc.infer.Range(*TIME)
-    tried = 0
-    while len(found) < count and tried < 20 * count:
-        random = np.random.default_rng((seed, tried))
-        tried += 1
-        point = bank.prior.draw(range(tried, tried + 1), seed)[0] if fixed is None else fixed
-        point = np.array(
-            [p * (change or {}).get(n, 1.0) for n, p in zip(names, point, strict=True)]
-        )
-        unit = float(span.value(random.random())) if fixed is None else 1.0
-        unit *= (change or {}).get("time_unit", 1.0)
-        length = FRAME * (FRAMES - 1) / unit
-        t_end = films.TRANSIENT + length + 2.0
-        try:
-            run = cc.simulate(
-                cc.Parameters(**dict(zip(names, point, strict=True))), t_end,
-                save_every=0.25, nodes=96,
-                start=cc.RandomPerturbation(seed=int(random.integers(2**40))),
-                **({} if "solver" in world else {"rtol": 1e-3}), **world,
-            )  # fmt: skip
-            one = Fresh(run, point, unit, films.TRANSIENT + 1.5 * random.random())
-            if run.attrs["status"] == "completed":
-                one.cell(True, 0.0, 0.0, 0)  # refuses a cell that rests
-                found.append(one)
-        except cc.InputError:
-            continue
-    return found
+    def found(self, taught: Trained, cells: list[Cell]) -> tuple[np.ndarray, list[Any]]:
+        """Return strangeness over the alarm's, and the fit, of each cell."""
+        fits = [fitting._fit(cell, taught, "abc", None) for cell in cells]
+        return np.array([one.strangeness for one in fits]), fits
 
 
-def posteriors(taught: Trained, cells: list[Cell]) -> tuple[np.ndarray, list[Any]]:
-    """Return strangeness over the alarm's, and the posterior, of each cell."""
-    away, found = [], []
-    for cell in cells:
-        film = cell.film(taught.microscope.usual_time, taught.microscope.usual_length)
-        values = summaries_of(film, taught.microscope)[1]
-        thought = taught.thought(values)
-        away.append(taught.alarm.strangeness(thought, values)[0] / taught.alarm.threshold)
-        found.append(approximate.posterior(taught.references, values[0], taught.width))
-    return np.array(away), found
+def taught_for(bank: Any, cells: list[Cell], camera: Camera, looks: int = 3) -> Trained:
+    """Return what a bank teaches of such cells."""
+    _, microscope = fitting.microscope_of(cells, bank, TIME, 1.0, camera.pixel, camera.error)
+    return train(bank, microscope, looks)
 
 
 def calibration(taught: Trained, cells: list[Fresh], found: list[Any]) -> Calibration:
@@ -114,122 +82,226 @@ def calibration(taught: Trained, cells: list[Fresh], found: list[Any]) -> Calibr
     truth = np.array(
         [[float(r.part(v)) for r, v in zip(ranges, (*c.point, c.unit), strict=True)] for c in cells]
     )
-    mean = np.array([one.weight @ one.part for one in found])
-    rank = np.array([one.weight @ (one.part < t) for one, t in zip(found, truth, strict=True)])
+    posterior = [one.samples for one in found]
+    mean = np.array([one.weight @ one.part for one in posterior])
+    rank = np.array([one.weight @ (one.part < t) for one, t in zip(posterior, truth, strict=True)])
     return Calibration(taught.view.names, truth, mean, rank)
 
 
-def described(one: Calibration) -> dict[str, Any]:
-    """Return a calibration as plain values by parameter."""
-    return {
-        name: {
-            "R2": round(float(one.recovered[i]), 4),
-            "coverage": {f"{level:g}": round(float(c[i]), 4) for level, c in one.levels.items()},
-            "rank p": round(float(one.evenness[i]), 4),
+def cameras(at: Measuring) -> dict[str, Any]:
+    """Recovery, coverage, ranks and false alarms through each camera."""
+    result = {}
+    for name, camera in CAMERAS.items():
+        began = time.perf_counter()
+        taught = at.taught(camera)
+        seconds = time.perf_counter() - began
+        away, found = at.found(taught, filmed(at.cells, camera))
+        result[name] = {
+            "fresh": described(calibration(taught, at.cells, found)),
+            "set apart": described(taught.calibration),
+            "cells": len(found),
+            "false alarms": round(float((away > 1).mean()), 4),
+            "seconds of training": round(seconds, 1),
         }
-        for i, name in enumerate(one.names)
+        print(name, json.dumps(result[name]), flush=True)
+    return result
+
+
+def alarms(at: Measuring) -> dict[str, Any]:
+    """How often the alarm is raised by cells of other laws and surroundings."""
+    worlds: dict[str, dict[str, Any]] = {
+        **{
+            f"catch bond, catch = {catch:g}": {"laws": cc.laws.CatchSlip(catch=catch)}
+            for catch in (5.0, 20.0, 40.0)
+        },
+        "few bonds, 2000 a length": {"solver": "stochastic", "bonds": 2000.0},
+        "patterned substrate": {"surroundings": cc.surroundings.Stripes(period=1.5, between=0.5)},
     }
+    result: dict[str, Any] = {}
+    for number, (name, world) in enumerate(worlds.items()):
+        others = fresh(at.bank, at.asked.others, 3000 + number, Camera(), **world)
+        told: dict[str, Any] = {"cells": len(others)}
+        for which in list(CAMERAS)[:3]:
+            if others:
+                camera = CAMERAS[which]
+                away, _ = at.found(at.taught(camera), filmed(others, camera))
+                told[which] = round(float((away > 1).mean()), 3)
+        result[name] = told
+        print(name, json.dumps(told), flush=True)
+    return result
 
 
-def drug(taught: Trained, bank: Any, trials: int, pool: int, seed: int) -> dict[str, Any]:
-    """Name the parameter that a drug moved by a fifth, 20 cells a side, drawn from a pool."""
+def drug(at: Measuring) -> dict[str, Any]:
+    """Name the parameter that a drug moved by a fifth, 20 cells a side, from points drawn anew."""
+    camera = Camera(frame=0.5)
+    taught = at.taught(camera)
     names = taught.view.names
-    fixed = np.array([26.0, 600.0, 0.06, 1e-3])
-    outlines = taught.microscope.outlines
-    pixel, error = taught.microscope.pixel, taught.microscope.error
+    random = np.random.default_rng(77)
+    low, high = np.array([18.0, 540.0, 0.03, 7e-4]), np.array([33.0, 625.0, 0.13, 1.4e-3])
+    trials: list[dict[str, Any]] = []
 
-    def fits(change: dict[str, float], first: int) -> list[Any]:
-        cells = [c.cell(outlines, pixel, error, i) for i, c in
-                 enumerate(fresh(bank, pool, first, change, fixed))]  # fmt: skip
-        away, found = posteriors(taught, cells)
-        return [
-            cc.infer.Fit(cell, taught, np.empty(0), one, "abc", one, float(far))
-            for cell, one, far in zip(cells, found, away, strict=True)
-        ]
+    def fits(point: np.ndarray, unit: float, seed: int) -> list[Any]:
+        cells = at_points(at.bank, TREATED, seed, camera, lambda _: point, unit)
+        return at.found(taught, filmed(cells, camera))[1]
 
-    control = fits({}, seed)
-    right = {}
-    random = np.random.default_rng(seed)
-    for number, name in enumerate(names):
-        treated = fits({name: 1.2}, seed + 1 + number)
-        named = 0
-        for _ in range(trials // len(names)):
-            one = random.choice(len(control), 20, replace=len(control) < 20)
-            other = random.choice(len(treated), 20, replace=len(treated) < 20)
-            found = cc.infer.compare([control[i] for i in one], [treated[i] for i in other])
-            named += found.likeliest == name
-        right[name] = named / (trials // len(names))
-    return {"right": right, "overall": float(np.mean(list(right.values()))), "pool": pool}
+    for place in range(at.asked.points):
+        point = low + (high - low) * random.random(4)
+        control = fits(point, 1.0, 5000 + 100 * place)
+        for number, name in enumerate(names):
+            for way, factor in enumerate(CHANGES):
+                moved = point * np.where(np.array(names[:-1]) == name, factor, 1.0)
+                unit = factor if name == names[-1] else 1.0
+                treated = fits(moved, unit, 5000 + 100 * place + 1 + 2 * number + way)
+                if min(len(control), len(treated)) < TREATED:
+                    continue
+                found = cc.infer.compare(control, treated)
+                interval = found.factor(name)
+                trials.append(
+                    {
+                        "moved": name,
+                        "by": round(factor, 4),
+                        "named": found.likeliest,
+                        "found": [round(float(v), 4) for v in interval],
+                    }
+                )
+        print(place, len(trials), np.mean([t["moved"] == t["named"] for t in trials]), flush=True)
+    right = {
+        n: round(float(np.mean([t["named"] == n for t in trials if t["moved"] == n])), 3)
+        for n in names
+    }
+    held = {
+        n: round(
+            float(
+                np.mean(
+                    [t["found"][1] < t["by"] < t["found"][2] for t in trials if t["moved"] == n]
+                )
+            ),
+            3,
+        )
+        for n in names
+    }
+    overall = float(np.mean([t["named"] == t["moved"] for t in trials]))
+    return {
+        "trials": len(trials), "points": at.asked.points, "cells a side": TREATED, "right": right,
+        "overall": round(overall, 3), "90 % intervals of the factor that hold it": held,
+    }  # fmt: skip
+
+
+def methods(at: Measuring) -> dict[str, Any]:
+    """How often the means of ABC and of the neural posterior are within a standard deviation."""
+    from cellcrawl.infer import neural
+
+    result: dict[str, Any] = {}
+    for name in list(CAMERAS)[:1] + list(CAMERAS)[2:3]:
+        camera = CAMERAS[name]
+        taught = at.taught(camera)
+        began = time.perf_counter()
+        estimate = neural.train_estimate(taught)
+        seconds = time.perf_counter() - began
+        cells = filmed(at.cells, camera)
+        found = [fitting._fit(cell, taught, "npe", estimate) for cell in cells]
+        apart = np.array([[n in one.disagreement for n in one.names] for one in found])
+        result[name] = {
+            "fresh": described(calibration(taught, at.cells, found)),
+            "within one standard deviation": {
+                n: round(float(1.0 - apart[:, i].mean()), 4)
+                for i, n in enumerate(taught.view.names)
+            },
+            "all of them": round(float(1.0 - apart.any(axis=1).mean()), 4),
+            "seconds of training": round(seconds, 1),
+        }
+        print(name, json.dumps(result[name]), flush=True)
+    return result
+
+
+def choice(at: Measuring) -> dict[str, Any]:
+    """How often the law of a cell is taken for another, by banks of both."""
+    result = {}
+    for path in at.asked.other:
+        other = cc.infer.open_bank(path)
+        for name in list(CAMERAS)[:3]:
+            cell = at.cells[0].cell(CAMERAS[name])
+            found = cc.infer.choose(
+                cell, [at.bank, other], time_unit=TIME, length_unit=1.0,
+                pixel=CAMERAS[name].pixel, error=CAMERAS[name].error,
+            )  # fmt: skip
+            law = f"{type(other.law).__name__} {other.law.describe()['values']}, {len(other)} runs"
+            result[f"{law}: {name}"] = {
+                "error rate": round(found.error_rate, 4),
+                "confusion": np.round(found.confusion, 3).tolist(),
+            }
+            print(law, name, found.error_rate, flush=True)
+    return result
+
+
+def microscope(at: Measuring) -> dict[str, Any]:
+    """R² of each parameter, of runs set apart, by what the microscope delivers."""
+    result = {}
+    for name, camera in MICROSCOPES.items():
+        cell = at.cells[0].cell(camera)
+        assert cell is not None
+        taught = taught_for(at.bank, [cell], camera, 1)
+        found = taught.calibration.recovered
+        result[name] = {
+            n: round(float(v), 3) for n, v in zip(taught.view.names, found, strict=True)
+        }
+        print(name, result[name], flush=True)
+    return result
+
+
+PARTS = {
+    "cameras": cameras,
+    "alarms": alarms,
+    "drug": drug,
+    "methods": methods,
+    "choice": choice,
+    "microscope": microscope,
+}
 
 
 def main() -> None:
     """Measure and write."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("bank", type=Path)
+    parser.add_argument("parts", nargs="*", metavar="PART")
     parser.add_argument("--cells", type=int, default=300)
-    parser.add_argument("--trials", type=int, default=100)
-    parser.add_argument("--pool", type=int, default=60)
     parser.add_argument("--others", type=int, default=60)
-    parser.add_argument("--cameras", type=int, default=len(CAMERAS))
+    parser.add_argument("--points", type=int, default=10)
+    parser.add_argument("--output", type=Path, default=RESULTS)
+    parser.add_argument("--other", type=Path, action="append", default=[])
     asked = parser.parse_args()
-    bank = cc.infer.open_bank(asked.bank)
-    began = time.perf_counter()
-    cells = fresh(bank, asked.cells, 1000)
-    result: dict[str, Any] = {
-        "machine": machine.record(),
-        "bank": {**bank.header, "outcomes": {}},
-        "film": {"frame": FRAME, "frames": FRAMES, "time_unit": TIME},
-        "cells": len(cells),
-        "cameras": {},
-    }  # fmt: skip
-    for outcome in bank.outcomes.tolist():
-        counted = result["bank"]["outcomes"]
-        counted[outcome] = counted.get(outcome, 0) + 1
-    for name, (outlines, pixel, error) in list(CAMERAS.items())[: asked.cameras]:
-        at = time.perf_counter()
-        films_ = [one.cell(outlines, pixel, error, i) for i, one in enumerate(cells)]
-        cut, microscope = microscope_of(films_, bank, TIME, 1.0, pixel, error)
-        taught = train(bank, microscope)
-        away, found = posteriors(taught, cut)
-        result["cameras"][name] = {
-            "fresh": described(calibration(taught, cells, found)),
-            "set apart": described(taught.calibration),
-            "false alarms": round(float((away > 1).mean()), 4),
-            "seconds": round(time.perf_counter() - at, 1),
+    at = Measuring(asked)
+    for part in asked.parts or PARTS:
+        began = time.perf_counter()
+        found = PARTS[part](at)
+        told = {
+            "date": machine.record()["date"],
+            "bank": at.bank.digest,
+            "runs": len(at.bank),
+            "seconds": round(time.perf_counter() - began, 1),
         }
-        print(name, json.dumps(result["cameras"][name]["fresh"]), flush=True)
-        if name == "outlines, noise-free":
-            result["alarms"] = alarms(taught, bank, asked.others)
-            print(json.dumps(result["alarms"]), flush=True)
-            result["drug"] = drug(taught, bank, asked.trials, asked.pool, 5000)
-            print(json.dumps(result["drug"]), flush=True)
-        result["seconds"] = round(time.perf_counter() - began, 1)
-        with tempfile.NamedTemporaryFile("w", dir=RESULTS.parent, delete=False) as file:
-            json.dump(result, file, indent=1)
-            file.write("\n")
-        Path(file.name).replace(RESULTS)
+        write(asked.output, at.bank, part, {**told, "found": found})
 
 
-def alarms(taught: Trained, bank: Any, count: int) -> dict[str, float]:
-    """Return how often the alarm is raised by cells of other laws and surroundings."""
-    worlds: dict[str, dict[str, Any]] = {
-        "catch bond": {"laws": cc.laws.CatchSlip(catch=5.0)},
-        "few bonds": {"solver": "stochastic", "bonds": 2000.0},
-        "patterned substrate": {"surroundings": cc.surroundings.Stripes(period=1.5, between=0.5)},
+def write(path: Path, bank: Any, part: str, found: dict[str, Any]) -> None:
+    """Put a part into the record, and take out parts of another bank."""
+    old = json.loads(path.read_text("utf-8")) if path.exists() else {}
+    kept = {
+        name: value
+        for name, value in old.items()
+        if name in PARTS and value.get("bank") == bank.digest
     }
-    found = {}
-    for number, (name, world) in enumerate(worlds.items()):
-        try:
-            others = fresh(bank, count, 3000 + number, **world)
-        except (TypeError, cc.CellcrawlError) as error:
-            found[name] = f"not measured: {error}"
-            continue
-        if not others:
-            found[name] = "not measured: no such cell moved"
-            continue
-        away, _ = posteriors(taught, [one.cell(True, 0.0, 0.0, 0) for one in others])
-        found[name] = round(float((away > 1).mean()), 3)
-    return found
+    result = {
+        "machine": machine.record(),
+        "bank": {**bank.header, "outcomes": dict(Counter(bank.outcomes.tolist()))},
+        "film": {"length": Camera().length, "time_unit": TIME},
+        **kept,
+        part: found,
+    }
+    with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as file:
+        json.dump(result, file, indent=1)
+        file.write("\n")
+    Path(file.name).replace(path)
 
 
 if __name__ == "__main__":

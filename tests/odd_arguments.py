@@ -91,6 +91,7 @@ def _fits(call: Callable[..., Call], folder: Path) -> Iterator[Call]:
     cells = [swimmer(25.0, 1e-3, seed, step=0.5) for seed in (1, 2, 3)]
     filmed = {"time_unit": (0.8, 1.25, "log"), "length_unit": 1.0, "pixel": 0.0, "error": 0.0,
               "outlines": None, "looks": 1, "seed": 0}  # fmt: skip
+    trained = {**filmed, "network": None}
     with training_in(5):
         fits = infer.fit_all(cells, known, **filmed)
     film = cc.observe(cells[0].isel(time=slice(20, None)), pixel=0.1, frame=0.5)
@@ -100,14 +101,15 @@ def _fits(call: Callable[..., Call], folder: Path) -> Iterator[Call]:
     yield call(
         infer.bank, prior=prior, runs=90, output=folder / "known.h5", laws="paper",
         parameters=None, t_end=T_END, seed=1, executor=InProcess(), workers=1, progress=False,
+        adopt=False,
     )  # fmt: skip
     yield call(infer.open_bank, path=folder / "known.h5")
     yield call(
-        quick(infer.fit), "cellcrawl.infer.fit", observed=film, bank=known, method="abc", **filmed
+        quick(infer.fit), "cellcrawl.infer.fit", observed=film, bank=known, method="abc", **trained
     )
     yield call(
         quick(infer.fit_all), "cellcrawl.infer.fit_all", observed=cells, bank=known, method="abc",
-        **filmed,
+        **trained,
     )  # fmt: skip
     yield call(
         quick(infer.choose), "cellcrawl.infer.choose", observed=cells[0], banks=[known, other],

@@ -1,5 +1,7 @@
 """Banks of made-up films: made by the same way as real ones, but for the solver."""
 
+import functools
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -52,7 +54,14 @@ def swimmer(r_on, epsilon, seed, t_end=T_END, step=films.SAVE_EVERY, turning=0.0
     return whole.isel(time=slice(None, None, every))
 
 
-def swim(run, keep):
+def at_rest(run):
+    """The same shapes of a cell that stays where it is."""
+    x, y = run.centroid_x - run.centroid_x[0], run.centroid_y - run.centroid_y[0]
+    moved = {"x": run.x - x, "y": run.y - y, "centroid_x": 0 * x, "centroid_y": 0 * y}
+    return run.assign(moved)
+
+
+def swim(run, keep, turning=0.0):
     """What a bank's worker does, without a solver; few runs rest or tear."""
     seed = run.start.seed
     mode, status = "gliding", "completed"
@@ -60,15 +69,17 @@ def swim(run, keep):
         mode = "stationary"
     if seed % 20 == 7:
         status = "fragmented"
-    made = swimmer(run.parameters.r_on, run.parameters.epsilon, seed, run.t_end)
+    made = swimmer(run.parameters.r_on, run.parameters.epsilon, seed, run.t_end, turning=turning)
     made = made.isel(time=slice(60 if status == "fragmented" else None))
+    if mode == "stationary":
+        made = at_rest(made)
     return Outcome({"status": status, "mode": mode, "message": ""}, films.film_of(made))
 
 
-def make_bank(runs, output, **named):
+def make_bank(runs, output, turning=0.0, **named):
     """Make a bank of made-up films."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(films, "execute", swim)
+        patch.setattr(films, "execute", functools.partial(swim, turning=turning))
         return cc.infer.bank(PRIOR, runs, output, t_end=T_END, executor=InProcess(), **named)
 
 

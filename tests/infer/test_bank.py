@@ -1,11 +1,13 @@
 """A bank: the same runs whatever their number, one file, nothing lost and nothing overwritten."""
 
+import json
+
 import h5py
 import numpy as np
 import pytest
 
 import cellcrawl as cc
-from cellcrawl.infer import films
+from cellcrawl.infer import bank_file, films
 from cellcrawl.sweeps.executors import InProcess
 from tests.infer.conftest import PRIOR, T_END, swimmer
 
@@ -66,6 +68,43 @@ def test_another_bank_is_not_overwritten(made_up, tmp_path, change, word):
     before = path.read_bytes()
     with pytest.raises(cc.InputError, match=word):
         made_up(4, path, **change)
+    assert path.read_bytes() == before
+
+
+def of_another_version(path, change=None):
+    """Make a bank one of another version, whose films may have been changed."""
+    with h5py.File(path, "r+") as file:
+        header = json.loads(file.attrs["header"]) | {"code": "0.0.0+elsewhere"}
+        file.attrs["header"] = json.dumps(header)
+        file.attrs["seal"] = bank_file._hash(file.attrs["header"])
+        if change is not None:
+            file["modes"][change, 4, 3, 0] += 1
+
+
+def test_a_bank_of_another_version_is_gone_on_with_if_its_runs_are_the_same(made_up, tmp_path):
+    path = tmp_path / "bank.h5"
+    made_up(6, path)
+    of_another_version(path)
+    before = path.read_bytes()
+    with pytest.raises(cc.InputError, match=r"another version of cellcrawl.*or adopt it"):
+        made_up(8, path)
+    assert path.read_bytes() == before
+    grown = made_up(8, path, adopt=True)
+    assert len(grown) == 8
+    assert "6 runs of 0.0.0+elsewhere, 6 of them made again: the same" in grown.summary()
+    anew = made_up(8, tmp_path / "anew.h5")
+    (one,), (other,) = grown.blocks(), anew.blocks()
+    assert np.array_equal(one.modes, other.modes)
+    assert made_up(10, path).header["adopted"] == grown.header["adopted"]
+
+
+def test_a_bank_whose_runs_come_out_otherwise_is_not_adopted(made_up, tmp_path):
+    path = tmp_path / "bank.h5"
+    made_up(6, path)
+    of_another_version(path, change=2)
+    before = path.read_bytes()
+    with pytest.raises(cc.InputError, match=r"run 2 of .*make the bank anew"):
+        made_up(8, path, adopt=True)
     assert path.read_bytes() == before
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import cellcrawl as cc
-from cellcrawl.infer import films
+from cellcrawl.infer import camera, films
 from cellcrawl.infer.cells import cells_of
 from cellcrawl.infer.microscope import Microscope, look, summaries_of
 from cellcrawl.infer.summaries import Films, summaries
@@ -70,30 +70,44 @@ def test_a_polygon_is_measured_at_equal_arclength():
     assert steps == pytest.approx(np.full(films.NODES, steps.mean()), rel=1e-3)
 
 
-def test_the_quick_camera_sees_what_the_microscope_sees():
-    """Its pixels are edge errors; `observe` draws pixels. Both change summaries alike."""
-    run = swimmer(25.0, 1e-3, 3, step=0.5)
-    late = run.isel(time=run.time.values >= films.TRANSIENT)
-    (plain,) = cells_of(run)
-    ideal = seen(plain.film(1.0, 1.0))
-    (cell,) = cells_of(cc.observe(late, pixel=0.1, frame=0.5))
-    assert cell.pixel == pytest.approx(0.1)
-    there = seen(cell.film(1.0, 1.0))
-    microscope = Microscope(0.5, len(plain.path), 0.1, 0.0, 1.0, 1.0, 1.0)
-    from cellcrawl.infer.microscope import _noisy
-
+def test_the_bank_s_camera_sees_what_the_microscope_sees():
+    """It draws no image; `observe` does. Both change summaries alike, to a third of the change."""
+    pixel, error = 0.1, 0.05
     random = np.random.default_rng(1)
-    rough = [
-        _noisy(plain.path[None], plain.modes[None], microscope, np.ones(1), random)
-        for _ in range(8)
-    ]
-    here = np.array([seen(Films(0.5, *one)) for one in rough])
-    names = [one.name for one in summaries(plain.film(1.0, 1.0))[0]]
-    for name in ("log rms edge velocity over 1 frames", "log mean of waves beyond 5"):
-        place = names.index(name)
-        # What pixels add to the ideal film is added by both, to a third of it.
-        added = there[place] - ideal[place]
-        assert here[:, place].mean() - ideal[place] == pytest.approx(added, abs=0.35)
+    there, here, ideal = [], [], []
+    for seed in range(6):
+        run = swimmer(25.0, 1e-3, seed, step=0.5)
+        late = run.isel(time=run.time.values >= films.TRANSIENT)
+        (plain,) = cells_of(run)
+        ideal.append(seen(plain.film(1.0, 1.0)))
+        film = cc.observe(late, pixel=pixel, error=error, frame=0.5, seed=seed)
+        (cell,) = cells_of(film)
+        assert cell.pixel == pytest.approx(pixel)
+        there.append(seen(cell.film(1.0, 1.0)))
+        path, modes = camera.seen(
+            plain.path[None], plain.modes[None], np.array([pixel]), np.array([error]), random
+        )
+        here.append(seen(Films(0.5, path, modes)))
+    there, here, ideal = (np.array(values) for values in (there, here, ideal))
+    noise = np.hypot(there.std(axis=0), here.std(axis=0)) / np.sqrt(len(here))
+    added = np.abs(here - ideal).mean(axis=0)
+    away = np.abs((there - here).mean(axis=0)) / (0.33 * added + 3.0 * noise + 1e-9)
+    names = np.array([one.name for one in summaries(plain.film(1.0, 1.0))[0]])
+    assert (away < 1.0).mean() > 0.97, names[away > 1.0]
+
+
+def test_a_camera_without_errors_changes_nothing_and_a_fine_one_little():
+    one = film()
+    random = np.random.default_rng(1)
+    none = camera.seen(one.path, one.modes, np.zeros(1), np.zeros(1), random)
+    assert none[0] == pytest.approx(one.path)
+    assert none[1] is one.modes
+    edge = films.equal_arclength(films.edge_of_modes(one.modes, 256))
+    even = films.modes_of_edge(edge.real, edge.imag)
+    path, modes = camera.seen(one.path, even, np.array([0.02]), np.zeros(1), random)
+    assert np.abs(path - one.path).max() < 0.02
+    size = np.abs(modes) - np.abs(even)
+    assert np.abs(size[..., films.WAVES != 0]).max() < 0.02
 
 
 def test_looks_count_every_run(bank):

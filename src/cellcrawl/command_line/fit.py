@@ -44,6 +44,12 @@ from cellcrawl.errors import InputError
 )
 @click.option("--method", default="abc", show_default=True, metavar="METHOD", help="abc or npe.")
 @click.option(
+    "--network",
+    type=click.Path(path_type=Path, dir_okay=False),
+    metavar="FILE",
+    help="With npe: use the network kept there, or train one and keep it there.",
+)
+@click.option(
     "--time-unit",
     metavar="TIME",
     help="Lifetime 1/k_off0 of a linker in s: 10, or 5,20,log.  [default: the bank's]",
@@ -72,6 +78,7 @@ def fit(
     treated: Path | None,
     treated_outlines: Path | None,
     method: str,
+    network: Path | None,
     time_unit: str | None,
     length_unit: str | None,
     error: float | None,
@@ -92,8 +99,10 @@ def fit(
       cellcrawl fit control.csv --treated drug.csv --length-unit 10 --bank paper.h5
     """
     from cellcrawl import infer
+    from cellcrawl.infer.page import must_be_a_page
 
     bank = infer.open_bank(bank_file)
+    must_be_a_page(output)
     if (treated_outlines is not None) and treated is None:
         raise InputError("--treated-outlines go with --treated")
     cells = _cells(file, outlines, track, reading)
@@ -107,6 +116,7 @@ def fit(
         pixel=_pixel(reading),
         error=error,
         seed=seed,
+        network=network,
     )
     control, drugged = fits[: len(cells)], fits[len(cells) :]
     for one in fits:

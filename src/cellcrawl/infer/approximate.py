@@ -13,7 +13,8 @@ import numpy as np
 from cellcrawl.infer.regression import Network, train
 
 _EDGE: Final = 1e-3  # parts are kept off the ends of their range, where a logit has no value
-_SHARE: Final = 0.08  # of the rows are near enough
+_SEEN_EDGE: Final = 3e-3
+_SHARE: Final = 0.03  # of the rows are near enough
 _FEWEST: Final = 150
 FOLDS: Final = 4
 _WIDTHS: Final = np.geomspace(0.5, 2.0, 57)
@@ -45,35 +46,32 @@ def local_linear(
     ----------
     part : ndarray, shape (row, name)
         Parameters of the reference rows, as parts 0 to 1 of their ranges.
-    seen : ndarray, shape (row, summary)
-        Their summaries; a few, of comparable size.
-    target : ndarray, shape (summary,)
-        Those of the cell.
+    seen : ndarray, shape (row, name)
+        What is expected of them, given their films.
+    target : ndarray, shape (name,)
+        What is expected of the cell.
     share : float
         Part of the rows that are taken as near.
 
     Notes
     -----
-    Epanechnikov weights; the parameters' logits are shifted along the regression, so that none
-    leaves its range, and their residuals are scaled to the spread expected at the target.
+    Epanechnikov weights; the parameters' logits are shifted along a regression on the logits of
+    what is expected, so that none leaves its range. One logit over the other is nearly a line up to
+    the ends of a range; a logit over a part is not, and gave intervals that were far too wide.
     """
     count = int(np.clip(share * len(seen), min(_FEWEST, len(seen)), len(seen)))
-    spread = np.maximum(seen.std(axis=0), 1e-9)
-    away = np.sqrt((((seen - target) / spread) ** 2).sum(axis=1))
+    places, place = _logit(seen, _SEEN_EDGE), _logit(target, _SEEN_EDGE)
+    spread = np.maximum(places.std(axis=0), 1e-9)
+    away = np.sqrt((((places - place) / spread) ** 2).sum(axis=1))
     near = np.argpartition(away, count - 1)[:count]
     reach = max(float(away[near].max()), 1e-12) * (1.0 + 1e-9)
     weight = 1.0 - (away[near] / reach) ** 2
     weight = np.maximum(weight, 1e-6)
     weight /= weight.sum()
-    x = np.column_stack([np.ones(count), (seen[near] - target) / spread])
+    x = np.column_stack([np.ones(count), (places[near] - place) / spread])
     y = _logit(part[near])
     found = _weighted(x, y, weight)
-    left = y - x @ found
-    size = np.log(left**2 + 1e-6)
-    wide = _weighted(x, size, weight, 1e-2)
-    scale = np.exp(0.5 * np.clip(wide[0] - x @ wide, -2.0, 2.0))
-    shifted = found[0] + left * scale
-    return Samples(_expit(shifted), weight, near)
+    return Samples(_expit(found[0] + y - x @ found), weight, near)
 
 
 class Reference(NamedTuple):
@@ -117,27 +115,25 @@ def posterior(
 
     Notes
     -----
-    What the networks differ by is an error of training, not a doubt about the cell: the posteriors
-    of the folds are brought to one middle before they are put together.
+    The cell stands where the networks together expect it; what it is compared with are the rows of
+    all of them, each expected by the one network that has not seen it.
     """
-    found, middles = [], []
-    for reference in references:
-        target = reference.network(summaries[None])[0]
-        one = local_linear(reference.part, reference.seen, target)
-        logit = _logit(one.part)
-        middles.append(one.weight @ logit)
-        found.append(
-            Samples(logit - middles[-1], one.weight / len(references), reference.rows[one.row])
-        )
-    away, weight, row = (np.concatenate(column) for column in zip(*found, strict=True))
-    return Samples(_expit(np.mean(middles, axis=0) + width * away), weight, row)
+    target = np.mean([one.network(summaries[None])[0] for one in references], axis=0)
+    part, seen, rows = (
+        np.concatenate([getattr(one, name) for one in references])
+        for name in ("part", "seen", "rows")
+    )
+    found = local_linear(part, seen, target)
+    logit = _logit(found.part)
+    middle = found.weight @ logit
+    return Samples(_expit(middle + width * (logit - middle)), found.weight, rows[found.row])
 
 
 def fair_width(references: list[Reference], summaries: np.ndarray, part: np.ndarray) -> np.ndarray:
     """Return the factors under which intervals of cells set apart hold the truth as they say.
 
-    A network that saw three quarters of the runs is a little less sure than four together, and
-    a region of near runs is a little too wide: posteriors come out too wide by some percent.
+    A network that saw three quarters of the runs is a little less sure than four together:
+    posteriors come out too wide by some percent.
     """
     ranks = np.empty((len(_WIDTHS), *part.shape))
     for row, (seen, truth) in enumerate(zip(summaries, part, strict=True)):
@@ -159,8 +155,8 @@ def _weighted(x: np.ndarray, y: np.ndarray, weight: np.ndarray, ridge: float = 1
     return np.asarray(np.linalg.solve((x.T * weight) @ x + keep, (x.T * weight) @ y))
 
 
-def _logit(part: np.ndarray) -> np.ndarray:
-    inner = np.clip(part, _EDGE, 1.0 - _EDGE)
+def _logit(part: np.ndarray, edge: float = _EDGE) -> np.ndarray:
+    inner = np.clip(part, edge, 1.0 - edge)
     return np.asarray(np.log(inner / (1.0 - inner)))
 
 

@@ -12,22 +12,21 @@ import h5py
 import numpy as np
 
 from cellcrawl.arguments import checked, file_path
-from cellcrawl.errors import InputError, StorageError
+from cellcrawl.errors import StorageError
 from cellcrawl.infer import bank_file, films
-from cellcrawl.infer.prior import PAPER_PRIOR, Prior, law_named, point_of
+from cellcrawl.infer.bank_runs import MOST, Runs, runs_there
+from cellcrawl.infer.prior import PAPER_PRIOR, Prior, law_named
 from cellcrawl.laws.law import Law
 from cellcrawl.locks import locked
 from cellcrawl.parameters import Parameters
 from cellcrawl.simulation.lazy import readable
 from cellcrawl.sweeps.driver import Sweeping
-from cellcrawl.sweeps.grid import Grid
 from cellcrawl.sweeps.identity import run_key
 from cellcrawl.validation import real_number, whole_number
 
 SUFFIX: Final = ".h5"
 _KEEP: Final = "tracks"  # what a sweep calls it when each run leaves a dataset
 _BLOCK: Final = 256  # runs read at a time
-_MOST: Final = 10_000_000
 SHORTEST: Final = films.TRANSIENT + 10.0
 
 
@@ -158,6 +157,11 @@ class Bank:
             *ranges,
             f"ended    {ended}",
             f"made by  cellcrawl {self._header['code']}; hash {self.digest}",
+            *(
+                f"adopted  {one['runs']} runs of {one['code']}, {one['made again']} of them made "
+                "again: the same"
+                for one in self._header.get("adopted", [])
+            ),
         ]
 
     def summary(self) -> str:
@@ -181,6 +185,7 @@ def bank(
     executor: Any = None,
     workers: int | None = None,
     progress: bool = False,
+    adopt: bool = False,
 ) -> Bank:
     """Make runs of cells drawn from a prior and keep a film of each, in one file.
 
@@ -205,6 +210,9 @@ def bank(
         Of the parameters drawn and of the random starts.
     executor, workers, progress
         As in `sweep`.
+    adopt : bool
+        Go on also with a file of another version of cellcrawl, if 24 of its runs, made again by
+        this one, are the same to the last bit; the file says so afterwards.
 
     Returns
     -------
@@ -231,23 +239,16 @@ def bank(
     prior = PAPER_PRIOR if prior is None else prior
     law = law_named(laws)
     prior.check_law(law)
-    whole_number("runs", runs, 1, _MOST)
+    whole_number("runs", runs, 1, MOST)
     whole_number("seed", seed, 0, 2**31)
     real_number("t_end", t_end, SHORTEST, 1e6)
     path = file_path("output", output)
-    header = bank_file.header_of(prior, law, parameters or Parameters(), t_end, seed)
-    done = _runs_there(path, header)
+    all_runs = Runs(prior, law, parameters or Parameters(), float(t_end), seed)
+    done, adopted = runs_there(path, all_runs, adopt)
     if done >= runs:
         return Bank(path)
-    grid = Grid(
-        points=[
-            {**point_of(prior.cell_names, values, law), "seed": _seed_of(seed, done + i)}
-            for i, values in enumerate(prior.draw(range(done, runs), seed))
-        ],
-        parameters=parameters or Parameters(),
-        laws=law,
-        **films.settings(t_end),
-    )
+    header = all_runs.header() | ({"adopted": adopted} if adopted else {})
+    grid = all_runs.grid(range(done, runs))
     # A folder of a smaller number of runs, left by Ctrl-C, has the first of these runs already.
     work = path.with_name(f"{path.name}.work")
     with locked(path.with_name(f"{path.name}.lock"), path, remove=True):
@@ -256,30 +257,12 @@ def bank(
         ) as at_work:
             at_work.make(grid, range(len(grid)), progress)
         keys = [run_key(run, _KEEP) for run in grid]
-        bank_file.pack(path, header, prior.draw(range(runs), seed), done, work, keys)
+        bank_file.pack(path, header, all_runs.drawn(range(runs)), done, work, keys)
         if not at_work.interrupted:
             shutil.rmtree(work, ignore_errors=True)
     made = Bank(path)
     made.interrupted = at_work.interrupted
     return made
-
-
-def _seed_of(seed: int, run: int) -> int:
-    """Return the seed of a run's start: no two runs of banks of any seed share one."""
-    return seed * _MOST + run
-
-
-def _runs_there(path: Path, header: dict[str, Any]) -> int:
-    """Return how many runs a file has already, or refuse to overwrite what it is."""
-    if not path.exists():
-        return 0
-    found = Bank(path)
-    for name, what in bank_file.ASKED.items():
-        if found.header[name] != header[name]:
-            raise InputError(
-                f"{path} is a bank with another {what}: give another output; it is not overwritten"
-            )
-    return len(found)
 
 
 @checked

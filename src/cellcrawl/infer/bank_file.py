@@ -101,15 +101,15 @@ def pack(
     header: dict[str, Any],
     parameters: np.ndarray,
     done: int,
-    work: Path,
-    keys: Sequence[str],
+    work: Path | None = None,
+    keys: Sequence[str] = (),
 ) -> None:
     """Write a bank of the runs it had and of those in a sweep's folder; all or nothing.
 
     Runs that are missing, after Ctrl-C, end the bank before them, so that it holds the first runs
     of what was asked.
     """
-    rows = _rows(work)
+    rows = {} if work is None else _rows(work)
     count = done + next((i for i, key in enumerate(keys) if key not in rows), len(keys))
     if not count:
         raise InputError("no run was finished: the same call goes on")
@@ -123,8 +123,8 @@ def pack(
             raise
         reason = error.strerror or " ".join(str(error).split())[:120]
         raise StorageError(
-            f"cannot write {path}: {reason}; the runs stay in {work}, and the same call goes on "
-            f"{what_would_help(error, reason)}"
+            f"cannot write {path}: {reason}; the runs stay where they are, and the same call "
+            f"goes on {what_would_help(error, reason)}"
         ) from None
     finally:
         with contextlib.suppress(OSError):
@@ -139,7 +139,7 @@ def _write(
     path: Path,
     rows: dict[str, dict[str, Any]],
     keys: Sequence[str],
-    work: Path,
+    work: Path | None,
 ) -> None:
     count, length = len(parameters), films.records_of(header["t_end"])
     waves = len(films.WAVES)
@@ -172,8 +172,9 @@ def _write(
         outcome[number] = _outcome(row).encode()
         if row["part"] is not None:
             parts.setdefault(row["part"], []).append((number, key))
-    layout = SweepStore(work).layout
     for name, members in parts.items():
+        assert work is not None
+        layout = SweepStore(work).layout
         with readable(layout.kept(name)), h5py.File(layout.kept(name), "r") as kept:
             for number, key in members:
                 path_of_run = kept[key]["centroid"][()][:length]

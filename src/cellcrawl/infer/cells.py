@@ -23,8 +23,6 @@ _MICROMETRES: Final = {"nm": 1e-3, "µm": 1.0, "mm": 1e3, "m": 1e6}
 _SECONDS: Final = {"ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0, "d": 86400.0}
 _OF_THE_MODEL: Final = ("R_0", "1/k_off0")
 _UNEVEN: Final = 0.05  # of the interval between frames
-_RESTING: Final = 0.02  # radii per frame: a cell that moves less between frames, and
-_STAYING: Final = 0.25  # radii in all
 _TRACED: Final = 256
 
 
@@ -94,7 +92,7 @@ def cells_of(observed: Any, outlines: Any = None) -> list[Cell]:
     Raises
     ------
     InputError
-        For no units, fewer than 16 frames, outlines for some frames only, or a cell that rests.
+        For no units, fewer than 16 frames, or outlines for some frames only.
     """
     if isinstance(observed, Cell):
         return [observed]
@@ -182,7 +180,7 @@ def _of_run(run: xr.Dataset) -> Cell:
     modes = films.modes_of_edge(edge.real, edge.imag)
     step = _even("the run", time[late])
     note = f"the first {films.TRANSIENT:g}/k_off0, in which a resting cell starts, are left out"
-    return _moving(Cell("run", step, centre, modes, 0.0, True, (note,)))
+    return Cell("run", step, centre, modes, 0.0, True, (note,))
 
 
 def _of_outlines(outlines: Outlines, name: str, wanted: int = 0) -> Cell:
@@ -208,7 +206,7 @@ def _of_outlines(outlines: Outlines, name: str, wanted: int = 0) -> Cell:
     changed = sum(bool(one.changes) for one in chosen)
     notes = (f"{changed} outlines were changed when they were read",) if changed else ()
     pixel = _pixel_of([one.xy for one in chosen]) * length
-    return _moving(Cell(name, step, path, modes, pixel, model, notes))
+    return Cell(name, step, path, modes, pixel, model, notes)
 
 
 def _pixel_of(traced: Sequence[np.ndarray]) -> float:
@@ -284,19 +282,6 @@ def _even(name: str, t: np.ndarray) -> float:
             "spaced in time"
         )
     return usual
-
-
-def _moving(cell: Cell) -> Cell:
-    """Refuse a cell that rests: nothing but that it rests is seen of it."""
-    radius = cell.radius
-    steps = np.abs(np.diff(cell.path))
-    away = np.abs(cell.path - cell.path[0]).max()
-    if radius > 0.0 and away < _STAYING * radius and np.median(steps) < _RESTING * radius:
-        raise InputError(
-            f"{cell.name} rests: it stays within {away / radius:.2f} of its radius, and a resting "
-            "cell tells nothing of its adhesions but that they hold it"
-        )
-    return cell
 
 
 def micrometres(pixel_size: Any) -> float | None:

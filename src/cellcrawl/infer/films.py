@@ -23,6 +23,7 @@ QUANTUM: Final = 1e-4
 """Step in which modes are kept, in R_0: a thousandth of a usual pixel."""
 _DENSE: Final = 256
 _LIMIT: Final = 32767
+_TINY: Final = 1e-9
 
 
 def modes_of_edge(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -96,14 +97,18 @@ def equal_arclength(edge: np.ndarray, nodes: int = NODES) -> np.ndarray:
     """
     count = edge.shape[-1]
     spectrum = np.fft.fft(edge, axis=-1) / count
-    smooth = edge_of_modes(spectrum[..., WAVES], _DENSE)
-    sides = np.abs(np.roll(smooth, -1, axis=-1) - smooth)
-    at = np.concatenate(
-        [np.zeros((*sides.shape[:-1], 1)), np.cumsum(sides, axis=-1)], axis=-1
-    ).reshape(-1, _DENSE + 1)
-    corners = np.concatenate([smooth, smooth[..., :1]], axis=-1).reshape(-1, _DENSE + 1)
-    result = np.empty((len(at), nodes), complex)
-    for i, (place, points) in enumerate(zip(at, corners, strict=True)):
-        along = place[-1] * np.arange(nodes) / nodes
-        result[i] = np.interp(along, place, points.real) + 1j * np.interp(along, place, points.imag)
-    return result.reshape(*edge.shape[:-1], nodes)
+    return evenly(edge_of_modes(spectrum[..., WAVES], _DENSE), nodes)
+
+
+def evenly(edge: np.ndarray, nodes: int) -> np.ndarray:
+    """Return points equally spaced along closed polygons, complex, shape (..., nodes)."""
+    corners = edge.reshape(-1, edge.shape[-1])
+    corners = np.concatenate([corners, corners[:, :1]], axis=1)
+    at = np.zeros(corners.shape)
+    np.cumsum(np.abs(np.diff(corners, axis=1)), axis=1, out=at[:, 1:])
+    # All polygons one after the other, each one long, so that one call interpolates them all.
+    number = np.arange(len(at))[:, None]
+    at = number + at / np.maximum(at[:, -1:], _TINY) * (1.0 - _TINY)
+    along = number + (np.arange(nodes) / nodes)[None]
+    found = np.interp(along.ravel(), at.ravel(), corners.ravel())
+    return np.asarray(found.reshape(*edge.shape[:-1], nodes))

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
-from cellcrawl.arguments import checked
+from cellcrawl.arguments import checked, file_path
 from cellcrawl.errors import InputError
 from cellcrawl.infer import approximate
 from cellcrawl.infer.bank import Bank
 from cellcrawl.infer.cells import Cell, cells_of
-from cellcrawl.infer.microscope import Microscope, summaries_of
+from cellcrawl.infer.microscope import Microscope, rests, summaries_of
 from cellcrawl.infer.prior import LENGTH_UNIT, TIME_UNIT, UNITS, Range, as_range
 from cellcrawl.infer.result import Fit
 from cellcrawl.infer.summaries import FEWEST_FRAMES
@@ -34,8 +35,9 @@ def fit(
     length_unit: Any = None,
     pixel: float | None = None,
     error: float | None = None,
-    looks: int = 2,
+    looks: int = 3,
     seed: int = 0,
+    network: str | Path | None = None,
 ) -> Fit:
     """Return what the parameters of one filmed cell may be, given a bank of runs.
 
@@ -61,6 +63,9 @@ def fit(
         How often each run of the bank is looked at, at other times and with other noise.
     seed : int
         Of the looks and of the networks.
+    network : str or Path, optional
+        With ``method="npe"``, a file ``.npz``: a network kept there of the same bank and microscope
+        is used; otherwise one is trained and kept there. Nothing is overwritten.
 
     Returns
     -------
@@ -85,8 +90,9 @@ def fit(
     and it does not notice everything; see ``Fit.strange``.
     """
     return _fits(
-        observed, bank, method, outlines, time_unit, length_unit, pixel, error, looks, seed, True
-    )[0]
+        observed, bank, method, outlines, time_unit, length_unit, pixel, error, looks, seed,
+        network, True,
+    )[0]  # fmt: skip
 
 
 @checked
@@ -100,15 +106,16 @@ def fit_all(
     length_unit: Any = None,
     pixel: float | None = None,
     error: float | None = None,
-    looks: int = 2,
+    looks: int = 3,
     seed: int = 0,
+    network: str | Path | None = None,
 ) -> list[Fit]:
     """Return a `Fit` of each of several cells of one assay, filmed alike.
 
     Parameters
     ----------
     observed : Outlines, Tracks, or a sequence of runs, Observations, Outlines and Tracks
-    bank, method, outlines, time_unit, length_unit, pixel, error, looks, seed
+    bank, method, outlines, time_unit, length_unit, pixel, error, looks, seed, network
         As in `fit`.
 
     Returns
@@ -122,8 +129,9 @@ def fit_all(
         As in `fit`; and for films of different frame intervals.
     """
     return _fits(
-        observed, bank, method, outlines, time_unit, length_unit, pixel, error, looks, seed, False
-    )
+        observed, bank, method, outlines, time_unit, length_unit, pixel, error, looks, seed,
+        network, False,
+    )  # fmt: skip
 
 
 def _fits(
@@ -137,11 +145,15 @@ def _fits(
     error: float | None,
     looks: int,
     seed: int,
+    network: str | Path | None,
     one: bool,
 ) -> list[Fit]:
     one_of("method", method, METHODS)
     whole_number("looks", looks, 1, 20)
     whole_number("seed", seed, 0, 2**31)
+    kept = None if network is None else file_path("network", network)
+    if kept is not None and method != "npe":
+        raise InputError("network goes with method='npe'")
     cells = cells_of(observed, outlines)
     if not cells:
         raise InputError("there is no cell to fit")
@@ -153,7 +165,7 @@ def _fits(
     if method == "npe":
         from cellcrawl.infer import neural
 
-        estimate = neural.trained_estimate(taught, seed)
+        estimate = neural.estimate_of(taught, seed, kept)
     return [_fit(cell, taught, method, estimate) for cell in cells]
 
 
@@ -212,7 +224,22 @@ def microscope_of(
     radius = float(np.median([cell.radius for cell in cut])) if outlines else 0.0
     if outlines and length is not None:
         radius = 1.0  # what the cell's size is does not change how it is seen
-    return cut, Microscope(frame, count, size, shift, radius, time, length)
+    microscope = Microscope(frame, count, size, shift, radius, time, length)
+    for cell in cut:
+        _must_move(cell, microscope)
+    return cut, microscope
+
+
+def _must_move(cell: Cell, microscope: Microscope) -> None:
+    """Refuse a cell that rests: nothing but that it rests is seen of it."""
+    own = cell.radius if microscope.length_unit is None else microscope.usual_length
+    film = cell.film(microscope.usual_time, own)
+    if rests(film.path, microscope)[0]:
+        away = float(np.abs(film.path - film.path[0, 0]).max())
+        raise InputError(
+            f"{cell.name} rests: it stays within {away:.2f} of its radius, and a resting cell "
+            "tells nothing of its adhesions but that they hold it"
+        )
 
 
 def _cut(cell: Cell, count: int) -> Cell:
@@ -244,4 +271,4 @@ def _fit(cell: Cell, taught: Trained, method: str, estimate: Any) -> Fit:
     _, values = summaries_of(film, microscope)
     plain = approximate.posterior(taught.references, values[0], taught.width)
     samples = plain if estimate is None else estimate.posterior(values[0])
-    return Fit.of(cell, taught, values[0], samples, method, plain)
+    return Fit.of(cell, taught, values[0], samples, method, plain, estimate)

@@ -8,16 +8,14 @@ from typing import Any, Final
 import numpy as np
 
 from cellcrawl.errors import InputError
-from cellcrawl.infer import films
+from cellcrawl.infer import camera, films
 from cellcrawl.infer.bank import Bank, Block
 from cellcrawl.infer.prior import LENGTH_UNIT, TIME_UNIT, Prior, Range
 from cellcrawl.infer.summaries import Films, Summary, summaries
 
-EDGE_ERROR: Final = 0.25
-"""Error of an outline read from pixels, standard deviation along its normal, in pixels.
-
-A calibration against `cellcrawl.observe`; `tests/infer` holds the two to each other.
-"""
+_WHOLE: Final = ("completed", "resting")
+_STAYING: Final = 0.25  # lengths that a resting cell stays within
+_CREEPING: Final = 0.01  # lengths per usual time: what goes less far has not moved
 
 
 @dataclass(frozen=True)
@@ -81,6 +79,21 @@ class Microscope:
 
         return {name: plain(value) for name, value in vars(self).items()}
 
+    def in_usual_units(self) -> dict[str, Any]:
+        """Return what decides how films look, as numbers by name, without units."""
+        told: dict[str, Any] = {
+            "frames": float(self.frames),
+            "frame": self.frame / self.usual_time,
+            "pixel": self.pixel / self.usual_length,
+            "error": self.error / self.usual_length,
+            "outlines": float(self.outlines),
+            "size known": float(self.length_unit is not None),
+        }
+        for name, range_ in self.unknown.items():
+            told[f"{name}, high over low"] = range_.high / range_.low
+            told[f"{name}, in its logarithm"] = float(range_.scale == "log")
+        return told
+
 
 @dataclass(frozen=True)
 class View:
@@ -120,8 +133,8 @@ def look(
     """Return a bank as a microscope would have seen it.
 
     Each look draws what is unknown of the units, when in the run the film begins, and the noise.
-    A run that ended before the film would have, or that rests, is counted and not seen: the cell
-    that was filmed lived and moved.
+    A run that ended before the film would have, or that rests in it, is counted and not seen: the
+    cell that was filmed lived and moved.
 
     Raises
     ------
@@ -173,20 +186,17 @@ def _seen(
     )
     time = draws.get(TIME_UNIT, np.full(count, _middle(microscope.time_unit)))
     needed = (microscope.frames - 1) * microscope.frame / time
-    there = (block.records - 1) * films.SAVE_EVERY
     outcome = bank.outcomes[block.runs]
-    resting = outcome == "resting"
+    # A run that ended by itself has its last record between two times of the grid.
+    early = ~np.isin(outcome, _WHOLE)
+    there = np.maximum(block.records - 1 - early, 0) * films.SAVE_EVERY
     failed = (outcome == "failed") | (outcome == "killed")
-    short = (needed > there + 1e-9) & ~resting & ~failed
-    rows = np.flatnonzero(~resting & ~short & ~failed)
-    ended = {
-        "seen": rows.size,
-        "resting": int(resting.sum()),
-        "failed": int(failed.sum()),
-    }
+    short = (needed > there + 1e-9) & ~failed
+    rows = np.flatnonzero(~short & ~failed)
+    ended = {"seen": 0, "resting": 0, "failed": int(failed.sum())}
     for name in np.unique(outcome[short]):
-        told = "longer than the run" if name == "completed" else f"ended before: {name}"
-        ended[told] = int((short & (outcome == name)).sum())
+        told = "longer than the run" if name in _WHOLE else f"ended before: {name}"
+        ended[told] = ended.get(told, 0) + int((short & (outcome == name)).sum())
     if not rows.size:
         return None, rows, part[rows], np.empty(0), ended
     begin = random.random(count)[rows] * (there - needed)[rows]
@@ -205,45 +215,28 @@ def _seen(
         unit = None
     if unit is None:
         unit = np.full(rows.size, _middle(microscope.length_unit))
-    path, modes = _noisy(path, modes, microscope, unit, random)
+    path, modes = camera.seen(path, modes, microscope.pixel / unit, microscope.error / unit, random)
     scale = unit / microscope.usual_length
-    step = microscope.frame / microscope.usual_time
     path = path * scale[:, None]
-    modes = None if modes is None else modes * scale[:, None, None]
-    return Films(step, path, modes), rows, part[rows], unit, ended
+    moves = ~rests(path, microscope)
+    ended |= {"seen": int(moves.sum()), "resting": int((~moves).sum())}
+    if not moves.any():
+        return None, rows[moves], part[rows[moves]], unit[moves], ended
+    modes = None if modes is None else (modes * scale[:, None, None])[moves]
+    step = microscope.frame / microscope.usual_time
+    return Films(step, path[moves], modes), rows[moves], part[rows[moves]], unit[moves], ended
 
 
-def _noisy(
-    path: np.ndarray,
-    modes: np.ndarray | None,
-    microscope: Microscope,
-    unit: np.ndarray,
-    random: np.random.Generator,
-) -> tuple[np.ndarray, np.ndarray | None]:
-    """Shift each frame by the error of position, and the edge by that of the pixels."""
-    if microscope.error > 0.0:
-        error = (microscope.error / unit)[:, None]
-        path = path + error * (
-            random.standard_normal(path.shape) + 1j * random.standard_normal(path.shape)
-        )
-    if modes is None or microscope.pixel <= 0.0:
-        return path, modes
-    pixel = microscope.pixel / unit
-    edge = films.edge_of_modes(modes)
-    slope = films.edge_of_modes(1j * films.WAVES * modes)
-    along = np.maximum(np.abs(slope), 1e-12)
-    # Errors of pixels beside each other are independent: per node they shrink where a node stands
-    # for several pixels.
-    length = 2.0 * np.pi * along.mean(axis=(1, 2))
-    together = np.sqrt(np.minimum(films.NODES * pixel / length, 1.0))
-    noise = (EDGE_ERROR * pixel * together)[:, None, None] * random.standard_normal(edge.shape)
-    rough = edge - 1j * slope / along * noise
-    seen = films.modes_of_edge(rough.real, rough.imag)
-    # The centroid of the area moves with its edge.
-    area = np.pi * np.sum(films.WAVES * np.abs(modes) ** 2, axis=-1)
-    aside = 2.0 * np.pi * (edge * noise * along).mean(axis=-1) / area
-    seen[..., films.MODES] -= aside
-    return path + aside, seen
+def rests(path: np.ndarray, microscope: Microscope) -> np.ndarray:
+    """Whether films, in the microscope's usual length, show a cell that stays where it is.
+
+    The same rule leaves out looks at a bank and refuses a cell: of a cell that rests nothing is
+    seen but that it rests.
+    """
+    away = np.abs(path - path[:, :1]).max(axis=1)
+    span = (microscope.frames - 1) * microscope.frame / microscope.usual_time
+    least = _CREEPING * span + 3.0 * microscope.error / microscope.usual_length
+    return np.asarray(away < min(_STAYING, least))
 
 
 def _at(values: np.ndarray, at: np.ndarray) -> np.ndarray:
@@ -286,4 +279,4 @@ def _counted(outcomes: dict[str, int]) -> str:
     return ", ".join(f"{name} {count}" for name, count in outcomes.items() if count)
 
 
-__all__ = ["EDGE_ERROR", "Microscope", "Prior", "View", "look", "summaries_of"]
+__all__ = ["Microscope", "Prior", "View", "look", "rests", "summaries_of"]

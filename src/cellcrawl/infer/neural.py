@@ -7,7 +7,6 @@ unpickled.
 from __future__ import annotations
 
 import contextlib
-import functools
 import importlib
 import io
 import json
@@ -19,13 +18,14 @@ from typing import Any, Final
 
 import numpy as np
 
-from cellcrawl.arguments import checked
+from cellcrawl.arguments import checked, file_path
 from cellcrawl.errors import InputError, MissingExtraError, StorageError
 from cellcrawl.infer.approximate import Samples
 from cellcrawl.infer.regression import Scaling
 from cellcrawl.infer.result import Fit
 from cellcrawl.infer.summaries import VERSION
 from cellcrawl.infer.trained import Trained
+from cellcrawl.validation import is_real
 
 _SAMPLES: Final = 2000
 _HIDDEN: Final = 50
@@ -33,6 +33,21 @@ _TRANSFORMS: Final = 5
 _KIND: Final = "cellcrawl network"
 _EPOCHS: Final = 200
 _EDGE: Final = 1e-3
+_MOST_KEPT: Final = 4
+_ALIKE: Final = 0.02  # relative: microscopes that differ less are one
+_kept: dict[tuple[int, int], tuple[Any, Any]] = {}  # views with their networks, for the next cell
+
+
+class _Silent:
+    """What sbi tells of its training, kept nowhere: it would write to the folder one is in."""
+
+    log_dir = None
+
+    def log_metric(self, name: str, value: float, step: int | None = None) -> None: ...
+    def log_metrics(self, metrics: dict[str, float], step: int | None = None) -> None: ...
+    def log_params(self, params: dict[str, Any]) -> None: ...
+    def add_figure(self, name: str, figure: Any, step: int | None = None) -> None: ...
+    def flush(self) -> None: ...
 
 
 class Estimate:
@@ -96,6 +111,7 @@ def train_estimate(taught: Trained, seed: int = 0) -> Estimate:
                 "maf", hidden_features=_HIDDEN, num_transforms=_TRANSFORMS
             ),
             show_progress_bars=False,
+            tracker=_Silent(),
         )
         network = trainer.append_simulations(theta, x).train(
             training_batch_size=min(256, max(len(rows) // 8, 16)), max_num_epochs=_EPOCHS
@@ -104,27 +120,26 @@ def train_estimate(taught: Trained, seed: int = 0) -> Estimate:
     return Estimate(network, scaling, _header(taught, theta.shape[1], x.shape[1]))
 
 
-@functools.lru_cache(maxsize=4)
-def _kept(taught: int, seed: int, known: Any) -> Estimate:
-    return train_estimate(known.value, seed)
+def estimate_of(taught: Trained, seed: int = 0, path: Path | None = None) -> Estimate:
+    """Return a network for these films: from a file if it is there, else trained, and kept there.
 
-
-class _Known:
-    """A Trained by identity: two of them are equal if they are one."""
-
-    def __init__(self, value: Trained) -> None:
-        self.value = value
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Known) and other.value.view is self.value.view
-
-    def __hash__(self) -> int:
-        return id(self.value.view)
-
-
-def trained_estimate(taught: Trained, seed: int = 0) -> Estimate:
-    """Return `train_estimate` of these, kept in memory for the next cell of the same film."""
-    return _kept(id(taught.view), seed, _Known(taught))
+    Raises
+    ------
+    InputError, StorageError
+        As `load_estimate`; the file is left as it is.
+    """
+    if path is not None and path.exists():
+        return load_estimate(path, taught)
+    key = (id(taught.view), seed)
+    found = _kept.get(key)
+    if found is None or found[0] is not taught.view:
+        found = (taught.view, train_estimate(taught, seed))
+        while len(_kept) >= _MOST_KEPT:
+            _kept.pop(next(iter(_kept)))
+        _kept[key] = found
+    if path is not None:
+        found[1].save(path)
+    return found[1]
 
 
 def load_estimate(path: Path, taught: Trained) -> Estimate:
@@ -139,22 +154,24 @@ def load_estimate(path: Path, taught: Trained) -> Estimate:
     """
     torch = _torch()
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             header = json.loads(bytes(file["header"]))
             arrays = {name: file[name] for name in file.files if name != "header"}
+            if not isinstance(header, dict):
+                raise TypeError
     except FileNotFoundError:
         raise InputError(f"there is no network {path}") from None
-    except (OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile, EOFError):
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, zipfile.BadZipFile, EOFError):
         raise StorageError(
             f"{path} is no network of cellcrawl, or damaged: train it anew; nothing in it was run"
         ) from None
     view = taught.view
     wanted = _header(taught, view.part.shape[1], view.summaries.shape[1])
     for name, told in wanted.items():
-        if header.get(name) != told:
+        if not _same(header.get(name), told):
             raise InputError(
-                f"{path} is a network of another {name} ({str(header.get(name))[:40]}): train it "
-                "anew"
+                f"{path} is a network of another {name}: give another file, where one is trained "
+                "and kept; it is not overwritten"
             )
     from sbi.neural_nets import posterior_nn
 
@@ -167,10 +184,23 @@ def load_estimate(path: Path, taught: Trained) -> Estimate:
     weights = {n[2:]: torch.as_tensor(v) for n, v in arrays.items() if n.startswith("w:")}
     try:
         network.load_state_dict(weights)
-    except RuntimeError:
+        scaling = Scaling(arrays["middle"], arrays["spread"])
+    except (RuntimeError, KeyError):
         raise StorageError(f"{path} is damaged: its weights do not fit; train it anew") from None
     network.eval()
-    return Estimate(network, Scaling(arrays["middle"], arrays["spread"]), header)
+    return Estimate(network, scaling, header)
+
+
+def _same(given: Any, wanted: Any) -> bool:
+    """Whether a header says the same; numbers of the microscope within two percent."""
+    if not isinstance(wanted, dict):
+        return bool(given == wanted)
+    if not isinstance(given, dict) or given.keys() != wanted.keys():
+        return False
+    return all(
+        is_real(given[name]) and abs(given[name] - value) <= _ALIKE * abs(value)
+        for name, value in wanted.items()
+    )
 
 
 @checked
@@ -181,12 +211,25 @@ def save_network(fit: Fit, path: str | Path) -> Path:
     ----------
     fit : Fit
     path : str or Path
-        The file, ``.npz``.
+        The file, ``.npz``. One that is there is not overwritten.
+
+    Raises
+    ------
+    InputError
+        For a fit by another method, or a file that is there.
+    StorageError
+        If it cannot be written.
+
+    See Also
+    --------
+    cellcrawl.infer.fit : Its argument ``network`` reads the file.
     """
     if fit.method != "npe":
         raise InputError("only a fit by method='npe' has a network to keep")
-    target = Path(path)
-    trained_estimate(fit.trained).save(target)
+    target = file_path("path", path)
+    if target.exists():
+        raise InputError(f"{target} is there already: give another file; it is not overwritten")
+    fit.estimate.save(target)
     return target
 
 
@@ -195,7 +238,8 @@ def _header(taught: Trained, unknowns: int, summaries: int) -> dict[str, Any]:
         "kind": _KIND,
         "version": VERSION,
         "bank": taught.bank.digest,
-        "microscope": taught.microscope.describe(),
+        "microscope": taught.microscope.in_usual_units(),
+        "unknown": list(taught.view.names),
         "unknowns": int(unknowns),
         "summaries": int(summaries),
     }

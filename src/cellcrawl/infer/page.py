@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from cellcrawl.arguments import checked
+from cellcrawl.arguments import checked, file_path
 from cellcrawl.errors import InputError, StorageError
 from cellcrawl.infer import pictures
 from cellcrawl.infer.population import Comparison, Group
@@ -35,8 +35,9 @@ vertical-align:top}
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap}
 td:first-child{min-width:8rem;overflow-wrap:normal}
 td small{color:var(--soft);display:block}
-@media(max-width:600px){td,th{font-size:.86rem;padding-right:.45rem}td.n,th.n{white-space:normal}
-td:first-child{min-width:6.4rem}.row img{width:100%}}
+@media(max-width:600px){td,th{font-size:.8rem;padding-right:.4rem;overflow-wrap:normal}
+td.n,th.n{white-space:normal}
+td:first-child{min-width:5.6rem}.row img{width:100%}}
 img{max-width:100%;height:auto;background:#fff;border-radius:4px}
 .row{display:flex;flex-wrap:wrap;gap:.6rem}.row img{width:18rem}
 .corner{min-width:34rem;width:46rem}
@@ -86,9 +87,7 @@ def report(
             raise InputError(f"fits must be what fit or fit_all returns, not {shown(one)}")
     if not cells:
         raise InputError("there is no fit to report")
-    path = Path(output)
-    if path.suffix.lower() not in (".html", ".htm"):
-        raise InputError(f"{path}: a report is written as .html")
+    path = must_be_a_page(output)
     heading = title or ("What a cell says" if len(cells) == 1 else f"What {len(cells)} cells say")
     parts = [f"<h1>{_text(heading)}</h1>", _origin(cells[0])]
     if comparison is not None:
@@ -110,6 +109,14 @@ def report(
         raise StorageError(
             f"cannot write {path}: {error.strerror or error}; give another output"
         ) from None
+    return path
+
+
+def must_be_a_page(output: str | Path) -> Path:
+    """Return the file of a report, or refuse a name that is not of an HTML page."""
+    path = file_path("output", output)
+    if path.suffix.lower() not in (".html", ".htm"):
+        raise InputError(f"{path}: a report is written as .html")
     return path
 
 
@@ -145,7 +152,8 @@ def _of_fit(fit: Fit, several: bool) -> str:
     made = [] if fit.alarm else pictures.foretold(fit)
     films = [("the cell", fit.cell), *((one.name, one) for one in made)]
     parts.append("<h2>The film, and runs with such parameters</h2>")
-    parts.append(_image(pictures.cell_picture(films), "the film and runs"))
+    shown_films = _image(pictures.cell_picture(films), "the film and runs", "corner")
+    parts.append(f'<div class="wide">{shown_films}</div>')
     if not several:
         parts.append("<h2>Pairs of parameters</h2>")
         parts.append(
@@ -181,7 +189,7 @@ def _of_comparison(comparison: Comparison) -> str:
     for i, name in enumerate(comparison.names):
         found = comparison.factor(name)
         rows.append(
-            f'<tr><td>{_text(name)}</td><td class="n">× {found.value:.3f}</td>'
+            f'<tr><td>{_text(name)}</td><td class="n">×&nbsp;{found.value:.3f}</td>'
             f'<td class="n">{found.low:.3f} to {found.high:.3f}</td>'
             f'<td class="n">{comparison.rises[i]:.3f}</td>'
             f'<td class="n">{comparison.moved[i]:.3f}</td></tr>'
@@ -195,7 +203,9 @@ def _of_comparison(comparison: Comparison) -> str:
         '<th class="n">P(it alone)</th></tr>'
         + "".join(rows)
         + "</table></div>"
-        + _image(pictures.comparison_picture(comparison), "cells of both conditions")
+        + '<div class="wide">'
+        + _image(pictures.comparison_picture(comparison), "cells of both conditions", "corner")
+        + "</div>"
     )
 
 

@@ -11,6 +11,8 @@ import numpy as np
 
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
+from cellcrawl.infer import calibrated
+from cellcrawl.infer.approximate import FOLDS
 from cellcrawl.infer.result import Fit, Interval, quantiles
 from cellcrawl.validation import listed, one_of, real_number, shown
 
@@ -18,6 +20,7 @@ FEWEST_CELLS: Final = 3
 _GRID: Final = 200
 _WIDEST: Final = 0.6  # spread between cells, as a part of the range of the prior
 _RIDGE: Final = 1e-4
+_OF_FEW: Final = FOLDS / (FOLDS - 2.0)  # a variance from so few networks may be too small
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,18 +205,25 @@ def compare(control: Sequence[Fit], treated: Sequence[Fit]) -> Comparison:
 
     Notes
     -----
-    Means over cells, and their scatter with its correlations between parameters: what cells of one
-    condition differ by, noise of the fit included, is the error. Each parameter in turn is let move
-    alone; the better that explains the shift of all means, the likelier it is the one.
-    A bias that the fits of both conditions share is not in the error: with a small bank intervals
-    of the factor are too narrow.
+    Each cell's parameters are read by the networks of the fit, held to runs of the bank near them
+    that the networks were not trained on: what a film hardly tells is not drawn to the middle of
+    the prior. The error has the scatter between cells, with its correlations between parameters,
+    and what the networks differ by in the change: an error that all cells of a condition share.
+    Each parameter in turn is let move alone; the better that explains the shift, the likelier it is
+    the one.
     """
     one, other = _alike(control), _alike(treated)
-    _alike([*one, *other])
-    before = np.array([fit.mean for fit in one])
-    after = np.array([fit.mean for fit in other])
-    shift = after.mean(axis=0) - before.mean(axis=0)
-    scatter = _scatter(before) / len(before) + _scatter(after) / len(after)
+    cells = _alike([*one, *other])
+    said = calibrated.thoughts(cells)
+    first, second = slice(0, len(one)), slice(len(one), None)
+    centre = calibrated.centre_of(cells, said, (first, second))
+    found = calibrated.estimates(cells, said, centre)
+    before, after = found[first], found[second]
+    shifts = after.mean(axis=0) - before.mean(axis=0)  # as each network sees it
+    shift = shifts.mean(axis=0)
+    scatter = _scatter(before.mean(axis=1)) / len(one) + _scatter(after.mean(axis=1)) / len(other)
+    shared = shifts.var(axis=0, ddof=1) / len(shifts)
+    scatter += np.diag(_OF_FEW * shared)
     error = np.sqrt(np.diag(scatter))
     precision = np.linalg.inv(scatter)
     # Of a move along one parameter alone, at its best: the squared misfit that it takes away.

@@ -58,6 +58,8 @@ class Fit:
         The posterior of regression ABC, to which that of ``method`` is held.
     strangeness : float
         Distance from what the model makes, over that of the alarm: above 1 it is no cell of it.
+    estimate : object
+        The trained network, of a neural posterior.
     """
 
     cell: Cell
@@ -67,6 +69,7 @@ class Fit:
     method: str
     abc: Samples
     strangeness: float
+    estimate: Any = None
 
     @classmethod
     def of(
@@ -77,11 +80,13 @@ class Fit:
         samples: Samples,
         method: str,
         plain: Samples,
+        estimate: Any = None,
     ) -> Self:
         """Return the fit with its alarm."""
         thought = trained.thought(summaries[None])
         away = float(trained.alarm.strangeness(thought, summaries[None])[0])
-        return cls(cell, trained, summaries, samples, method, plain, away / trained.alarm.threshold)
+        away /= trained.alarm.threshold
+        return cls(cell, trained, summaries, samples, method, plain, away, estimate)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -202,7 +207,7 @@ class Fit:
             rows.append(
                 {
                     "name": name,
-                    "unit": unit_of(name),
+                    "unit": "" if self.cell.model_units else unit_of(name),
                     "meaning": meaning_of(name),
                     **found._asdict(),
                     "of the prior": float(narrowed),
@@ -212,7 +217,7 @@ class Fit:
             rows.append(
                 {
                     "name": LENGTH_UNIT,
-                    "unit": unit_of(LENGTH_UNIT),
+                    "unit": "" if self.cell.model_units else unit_of(LENGTH_UNIT),
                     "meaning": meaning_of(LENGTH_UNIT),
                     **self.radius._asdict(),
                     "of the prior": float("nan"),

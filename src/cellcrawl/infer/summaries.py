@@ -13,13 +13,14 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from cellcrawl.infer import films
+from cellcrawl.infer.correlations import TINY, correlation, lags, ratio, together
 
-VERSION: Final = 1
+VERSION: Final = 2
 FEWEST_FRAMES: Final = 16
 """Fewer frames than this show no turn and no beat."""
 _NODES: Final = 32
-_TINY: Final = 1e-12
 _SMALL: Final = 1e-3  # of a mean: a spread below is as good as none
+_SLOW: Final = 0.05  # of a spread, in a unit of time: a pace below is as good as none
 _BANDS: Final = 6
 _SHAPES: Final = (-1, 2, -2, 3, -3, 4, -4, 5, -5)
 _QUANTILES: Final = (0.02, 0.1, 0.25, 0.5, 0.75, 0.9, 0.98)
@@ -58,7 +59,7 @@ def summaries(seen: Films) -> tuple[list[Summary], np.ndarray]:
     path, modes = seen.path, seen.modes
     if modes is not None:
         area = math.pi * np.sum(films.WAVES * np.abs(modes) ** 2, axis=-1)
-        radius = np.sqrt(np.maximum(np.median(area, axis=1), _TINY) / math.pi)
+        radius = np.sqrt(np.maximum(np.median(area, axis=1), TINY) / math.pi)
         path, modes = path / radius[:, None], modes / radius[:, None, None]
     lag = max(1, min(round(1.0 / seen.step), path.shape[1] // 6))
     # Along x on the whole, so that points along an outline lie on the cell, not on the picture.
@@ -84,16 +85,16 @@ class _Gathered:
         self.columns.append(np.asarray(values, float))
 
     def add_log(self, name: str, unit: str, values: np.ndarray, outlines: bool) -> None:
-        self.add(f"log {name}", unit, np.log(np.maximum(values, _TINY)), outlines)
+        self.add(f"log {name}", unit, np.log(np.maximum(values, TINY)), outlines)
 
 
 def _of_track(to: _Gathered, path: np.ndarray, step: float, lag: int) -> None:
-    for number in _lags(path.shape[1]):
+    for number in lags(path.shape[1]):
         moved = np.abs(path[:, number:] - path[:, :-number])
         rms = np.sqrt((moved**2).mean(axis=1))
         to.add_log(f"rms displacement in {number} frames", "length", rms, False)
         to.add(
-            f"spread of displacement in {number} frames", "", _ratio(moved.std(axis=1), rms), False
+            f"spread of displacement in {number} frames", "", ratio(moved.std(axis=1), rms), False
         )
     velocity = (path[:, lag:] - path[:, :-lag]) / (lag * step)
     speed = np.abs(velocity)
@@ -106,13 +107,13 @@ def _of_track(to: _Gathered, path: np.ndarray, step: float, lag: int) -> None:
         )
     _series(to, "speed", "length/time", speed, step, lag, False)
     steps = np.diff(path, axis=1)
-    for number in _lags(steps.shape[1]):
-        to.add(f"velocity correlation at {number} frames", "", _correlation(steps, number), False)
+    for number in lags(steps.shape[1]):
+        to.add(f"velocity correlation at {number} frames", "", correlation(steps, number), False)
     turn = np.angle(velocity[:, lag:] * np.conj(velocity[:, :-lag])) / (lag * step)
     rms = np.sqrt((turn**2).mean(axis=1))
     to.add_log("rms turning rate", "rad/time", rms, False)
-    to.add("net turn over rms", "", _ratio(np.abs(turn.mean(axis=1)), rms), False)
-    to.add("kurtosis of turns", "", np.log(_ratio((turn**4).mean(axis=1), rms**4) + 1.0), False)
+    to.add("net turn over rms", "", ratio(np.abs(turn.mean(axis=1)), rms), False)
+    to.add("kurtosis of turns", "", np.log(ratio((turn**4).mean(axis=1), rms**4) + 1.0), False)
     for quantile in (0.5, 0.9):
         to.add_log(
             f"turning rate, quantile {quantile:g}",
@@ -120,11 +121,11 @@ def _of_track(to: _Gathered, path: np.ndarray, step: float, lag: int) -> None:
             np.quantile(np.abs(turn), quantile, axis=1),
             False,
         )
-    for number in _lags(turn.shape[1]):
-        to.add(f"turn correlation at {number} frames", "", _correlation(turn, number), False)
+    for number in lags(turn.shape[1]):
+        to.add(f"turn correlation at {number} frames", "", correlation(turn, number), False)
     length = np.abs(steps).sum(axis=1)
     net = np.abs(path[:, -1] - path[:, 0])
-    to.add("net over path", "", _ratio(net, length), False)
+    to.add("net over path", "", ratio(net, length), False)
     _spectrum(to, "velocity", steps - steps.mean(axis=1, keepdims=True), step, False)
     _spectrum(to, "turns", turn - turn.mean(axis=1, keepdims=True), step, False)
 
@@ -141,13 +142,13 @@ def _of_outlines(to: _Gathered, path: np.ndarray, modes: np.ndarray, step: float
     edge = films.edge_of_modes(placed, _NODES)
     slope = films.edge_of_modes(1j * films.WAVES * placed, _NODES)
     bend = films.edge_of_modes(-(films.WAVES**2) * placed, _NODES)
-    along = np.maximum(np.abs(slope), _TINY)
+    along = np.maximum(np.abs(slope), TINY)
     length = 2.0 * math.pi * along.mean(axis=-1)
     curvature = (np.conj(slope) * bend).imag / along**3
     series = {
         "area": area,
         "length of the edge": length,
-        "circularity": 4.0 * math.pi * area / np.maximum(length, _TINY) ** 2,
+        "circularity": 4.0 * math.pi * area / np.maximum(length, TINY) ** 2,
         **{f"wave {k:+d}": size[k] for k in _SHAPES},
         "waves beyond 5": fine,
     }
@@ -165,7 +166,7 @@ def _of_outlines(to: _Gathered, path: np.ndarray, modes: np.ndarray, step: float
             ..., None
         ]
         normal = -1j * (slope[:, number:] + slope[:, :-number])
-        normal /= np.maximum(np.abs(normal), _TINY)
+        normal /= np.maximum(np.abs(normal), TINY)
         outward = (np.conj(normal) * velocity).real / (number * step)
         _edge_motion(to, outward, f"over {number} frames")
         if number == lag:
@@ -175,15 +176,16 @@ def _of_outlines(to: _Gathered, path: np.ndarray, modes: np.ndarray, step: float
                 name = f"edge velocity, cos {m} of the angle to the front"
                 to.add(name, "length/time", mean, True)
             bent = 0.5 * (curvature[:, number:] + curvature[:, :-number])
-            together = _together(outward, np.clip(bent, -20, 20))
-            to.add("edge velocity with curvature", "", together, True)
+            with_curvature = together(outward, np.clip(bent, -20, 20))
+            to.add("edge velocity with curvature", "", with_curvature, True)
     speed = np.abs(path[:, lag:] - path[:, :-lag])
     for name in ("area", "circularity", "wave -1", "wave -2"):
         seen = series[name][:, middle]
-        to.add(f"{name} with speed", "", _together(speed, seen), True)
-    _spectrum(to, "area", area - area.mean(axis=1, keepdims=True), step, True)
+        to.add(f"{name} with speed", "", together(speed, seen), True)
+    usual = area.mean(axis=1, keepdims=True)
+    _spectrum(to, "area", area - usual, step, True, _SMALL * usual)
     stretch = size[-1] - size[-1].mean(axis=1, keepdims=True)
-    _spectrum(to, "wave -1", stretch, step, True)
+    _spectrum(to, "wave -1", stretch, step, True, _SMALL)
 
 
 def _in_direction(to: _Gathered, modes: np.ndarray, heading: np.ndarray) -> None:
@@ -211,20 +213,20 @@ def _edge_motion(to: _Gathered, outward: np.ndarray, when: str) -> None:
     to.add_log(f"rms edge velocity {when}", unit, rms, True)
     for quantile in _QUANTILES:
         value = np.quantile(outward, quantile, axis=(1, 2))
-        to.add(f"edge velocity {when}, quantile {quantile:g}", "", _ratio(value, rms), True)
+        to.add(f"edge velocity {when}, quantile {quantile:g}", "", ratio(value, rms), True)
     fastest, slowest = outward.max(axis=2), outward.min(axis=2)
     for name, values in (("fastest", fastest), ("slowest", slowest)):
-        to.add(f"mean of the {name} edge {when}", "", _ratio(values.mean(axis=1), rms), True)
-        to.add(f"spread of the {name} edge {when}", "", _ratio(values.std(axis=1), rms), True)
+        to.add(f"mean of the {name} edge {when}", "", ratio(values.mean(axis=1), rms), True)
+        to.add(f"spread of the {name} edge {when}", "", ratio(values.std(axis=1), rms), True)
     waves = np.abs(np.fft.rfft(outward, axis=2)) ** 2
     for low, high in ((1, 2), (2, 3), (3, 4), (4, 6), (6, 11)):
         power = waves[:, :, low:high].sum(axis=2).mean(axis=1)
-        part = _ratio(power, waves[:, :, 1:].sum(axis=2).mean(axis=1))
+        part = ratio(power, waves[:, :, 1:].sum(axis=2).mean(axis=1))
         to.add_log(f"edge velocity {when} in waves {low} to {high - 1}", "", part, True)
-    for number in _lags(outward.shape[1])[:5]:
+    for number in lags(outward.shape[1])[:5]:
         product = (outward[:, number:] * outward[:, :-number]).mean(axis=(1, 2))
         name = f"edge velocity {when}, correlation at {number} frames"
-        to.add(name, "", _ratio(product, rms**2), True)
+        to.add(name, "", ratio(product, rms**2), True)
 
 
 def _series(
@@ -239,29 +241,39 @@ def _series(
     """Mean, spread, pace and memory of a number over time."""
     mean, spread = values.mean(axis=1), values.std(axis=1)
     to.add_log(f"mean of {name}", unit, np.abs(mean), outlines)
-    part = np.hypot(_ratio(spread, np.abs(mean)), _SMALL)
+    part = np.hypot(ratio(spread, np.abs(mean)), _SMALL)
     to.add_log(f"spread of {name}", "", part, outlines)
     pace = (values[:, lag:] - values[:, :-lag]) / (lag * step)
     rms = np.sqrt((pace**2).mean(axis=1))
     still = np.hypot(spread, _SMALL * np.abs(mean))
-    to.add_log(f"pace of {name}", "1/time", np.hypot(_ratio(rms, still), _SMALL), outlines)
+    to.add_log(f"pace of {name}", "1/time", np.hypot(ratio(rms, still), _SLOW), outlines)
     centred = values - mean[:, None]
     to.add(
-        f"skewness of {name}", "", np.cbrt(_ratio((centred**3).mean(axis=1), spread**3)), outlines
+        f"skewness of {name}", "", np.cbrt(ratio((centred**3).mean(axis=1), spread**3)), outlines
     )
-    for number in _lags(values.shape[1])[1:]:
-        seen = _correlation(centred, number)
+    for number in lags(values.shape[1])[1:]:
+        seen = correlation(centred, number, _SMALL * mean)
         to.add(f"{name}, correlation at {number} frames", "", seen, outlines)
 
 
-def _spectrum(to: _Gathered, name: str, values: np.ndarray, step: float, outlines: bool) -> None:
-    """Where in frequency a number changes: parts of the power in bands, and its middle."""
+def _spectrum(
+    to: _Gathered,
+    name: str,
+    values: np.ndarray,
+    step: float,
+    outlines: bool,
+    least: np.ndarray | float = 0.0,
+) -> None:
+    """Where in frequency a number changes: parts of the power in bands, and its middle.
+
+    A change below ``least`` is taken for noise, evenly spread: that of a bank's steps is there.
+    """
     count = values.shape[1]
     window = np.hanning(count + 2)[1:-1]
-    power = np.abs(np.fft.fft(values * window, axis=1)) ** 2
+    power = np.abs(np.fft.fft(values * window, axis=1)) ** 2 + least**2 * (window**2).sum()
     half = (count - 1) // 2
     folded = power[:, 1 : half + 1] + power[:, ::-1][:, :half]  # either sense of turning
-    total = np.maximum(folded.sum(axis=1), _TINY)
+    total = np.maximum(folded.sum(axis=1), TINY)
     frequency = np.arange(1, half + 1) / (count * step)
     edges = np.geomspace(0.999 * frequency[0], 1.001 * frequency[-1], _BANDS + 1)
     for band in range(_BANDS):
@@ -274,27 +286,3 @@ def _spectrum(to: _Gathered, name: str, values: np.ndarray, step: float, outline
     middle = np.exp((folded * np.log(frequency)).sum(axis=1) / total)
     to.add_log(f"middle frequency of {name}", "1/time", middle, outlines)
     to.add_log(f"peak frequency of {name}", "1/time", frequency[folded.argmax(axis=1)], outlines)
-
-
-def _lags(count: int) -> list[int]:
-    """Return 1, 2, 4, ... frames, up to a third of what there is."""
-    return [2**i for i in range(8) if 2**i <= max(count // 3, 1)]
-
-
-def _correlation(values: np.ndarray, lag: int) -> np.ndarray:
-    power = (np.abs(values) ** 2).mean(axis=1)
-    product = (values[:, lag:] * np.conj(values[:, :-lag])).real.mean(axis=1)
-    return _ratio(product, power)
-
-
-def _together(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return the correlation of two numbers over all but the first axis."""
-    axes = tuple(range(1, one.ndim))
-    a = one - one.mean(axis=axes, keepdims=True)
-    b = other - other.mean(axis=axes, keepdims=True)
-    size = np.sqrt((a**2).mean(axis=axes) * (b**2).mean(axis=axes))
-    return _ratio((a * b).mean(axis=axes), size)
-
-
-def _ratio(above: np.ndarray, below: np.ndarray) -> np.ndarray:
-    return np.asarray(above / np.maximum(below, _TINY))

@@ -19,7 +19,7 @@ FEWEST_RUNS: Final = 60
 _ASIDE: Final = 0.15  # of the runs are set apart, to try the method on
 _MOST_ASIDE: Final = 600
 _LEVELS: Final = (0.5, 0.8, 0.9, 0.95)
-FALSE_ALARMS: Final = 0.04
+FALSE_ALARMS: Final = 0.03
 _FAR: Final = 12.0  # spreads beyond which one summary counts no more
 
 
@@ -109,7 +109,7 @@ class Trained(NamedTuple):
 
 
 @on_one_thread
-def train(bank: Bank, microscope: Microscope, looks: int = 2, seed: int = 0) -> Trained:
+def train(bank: Bank, microscope: Microscope, looks: int = 3, seed: int = 0) -> Trained:
     """Look at a bank through a microscope, learn, and try it on runs set apart.
 
     Raises
@@ -143,7 +143,7 @@ def _kept(path: str, digest: str, microscope: Microscope, looks: int, seed: int)
     return train(Bank(path), microscope, looks, seed)
 
 
-def trained(bank: Bank, microscope: Microscope, looks: int = 2, seed: int = 0) -> Trained:
+def trained(bank: Bank, microscope: Microscope, looks: int = 3, seed: int = 0) -> Trained:
     """Return `train` of these, kept in memory for the next cell of the same film."""
     return _kept(str(bank.path), bank.digest, microscope, looks, seed)
 
