@@ -196,6 +196,8 @@ def test_outlines_of_negative_pixels_or_no_form_are_refused(tmp_path):
     given = some_outlines()
     with pytest.raises(cc.InputError, match="shift them to positive"):
         cc.write_outlines(tmp_path / "o.tif", [Outline(given[0].xy - 50, y_down=True)])
+    with pytest.raises(cc.InputError, match="give a smaller pixel"):
+        cc.write_outlines(tmp_path / "o.tif", given, pixel=100.0)
     with pytest.raises(cc.InputError, match="tells no form"):
         cc.write_outlines(tmp_path / "o.xyz", given)
     with pytest.raises(cc.InputError, match="no outlines to write"):

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Final
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from cellcrawl.microscopy.options import Reading
 from cellcrawl.microscopy.outlines import Outline, Outlines
 from cellcrawl.microscopy.source import LeftOut, Source
 
-_FEWEST_PIXELS = 4
+FEWEST_PIXELS: Final = 4
 _JUMP = 2.0  # centroids further apart than this many square roots of the area are two cells
 _MOST_LABELS = 0.2  # distinct values over pixels at which an image is a photograph
 
@@ -58,9 +59,9 @@ def outlines_of_labels(
     for frame, t, image in zip(numbers, times, frames, strict=True):
         _must_be_labels(image, source.path)
         for piece in pieces(image):
-            if piece.pixels < _FEWEST_PIXELS:
+            if piece.pixels < FEWEST_PIXELS:
                 told = f"{piece.label} in frame {frame}"
-                left_out.append(LeftOut(told, f"fewer than {_FEWEST_PIXELS} pixels", piece.pixels))
+                left_out.append(LeftOut(told, f"fewer than {FEWEST_PIXELS} pixels", piece.pixels))
                 continue
             found.append(
                 Outline(

@@ -15,6 +15,7 @@ import numpy as np
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError, StorageError
 from cellcrawl.microscopy.extras import reader
+from cellcrawl.microscopy.label_images import FEWEST_PIXELS
 from cellcrawl.microscopy.outlines import Outline
 from cellcrawl.microscopy.raster import rasterised
 from cellcrawl.microscopy.track_forms import write_text
@@ -58,7 +59,8 @@ def write_outlines(
 
     Notes
     -----
-    Label images start at the origin, and what lies at negative coordinates is refused. cellpose
+    Label images start at the origin, and what lies at negative coordinates is refused, as is a cell of
+    fewer than four pixels, which no reader takes for one. cellpose
     outlines are rounded to whole pixels. Outlines with y upwards are mirrored, as tracks are.
     """
     target = Path(path)
@@ -160,7 +162,13 @@ def _write_labels(
         raise InputError("more than 65 535 cells do not fit into one label image")
     labels = np.zeros((frames, rows, columns), kind)
     for one, xy in zip(outlines, drawn, strict=True):
-        labels[one.frame][rasterised(xy, (rows, columns))] = numbers[one.track]
+        covered = rasterised(xy, (rows, columns))
+        if np.count_nonzero(covered) < FEWEST_PIXELS:
+            raise InputError(
+                f"the outline of {one.track or 'the cell'} in frame {one.frame} covers "
+                f"{np.count_nonzero(covered)} pixels of {size:g}: give a smaller pixel"
+            )
+        labels[one.frame][covered] = numbers[one.track]
     first = outlines[0]
     if form == "cellpose masks":
         content = {"masks": labels[0] if frames == 1 else labels, "filename": target.name}
