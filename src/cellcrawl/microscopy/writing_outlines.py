@@ -59,9 +59,9 @@ def write_outlines(
 
     Notes
     -----
-    Label images start at the origin, and what lies at negative coordinates is refused, as is a cell of
-    fewer than four pixels, which no reader takes for one. cellpose
-    outlines are rounded to whole pixels. Outlines with y upwards are mirrored, as tracks are.
+    Label images start at the origin, and what lies at negative coordinates is refused, as is a cell
+    of fewer than four pixels, which no reader takes for one. cellpose outlines are rounded to whole
+    pixels. Outlines with y upwards are mirrored, as tracks are.
     """
     target = Path(path)
     form = form or _by_name(target)
