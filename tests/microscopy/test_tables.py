@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import cellcrawl as cc
+from cellcrawl.microscopy import tables
 
 # Two cells of four records; the second starts later, and y is no function of x.
 RECORDS = [
@@ -400,3 +401,23 @@ def test_tracks_of_icy_are_read(tmp_path):
     tracks = read(tmp_path, f"<root><trackfile version='1'/>{group}</root>", "cells.xml")
     must_be_the_two_cells(tracks)
     assert (tracks.source.length_units, tracks.source.y_down) == ("pixel", True)
+
+
+def test_a_table_read_in_many_pieces_is_that_read_in_one(tmp_path, monkeypatch):
+    rows = list(RECORDS)
+    rows[2] = ("a", 2.0, "?", 4.25)
+    rows[5] = ("b", "soon", 11.5, -3.25)
+    lines = ["movie,track,t,x,y,unit"]
+    lines += [f"m{movie},{','.join(map(str, row))},um" for movie in (1, 2) for row in rows]
+    whole = read(tmp_path, "\n".join(lines), "whole.csv")
+    monkeypatch.setattr(tables, "_BLOCK", 64)  # two or three rows
+    pieces = read(tmp_path, "\n".join(lines), "pieces.csv")
+    assert pieces.ids == whole.ids
+    assert len(whole.ids) == 4
+    for name in ("t", "x", "y", "starts"):
+        np.testing.assert_array_equal(getattr(pieces, name), getattr(whole, name))
+    assert [(o.what, o.reason) for o in pieces.left_out] == [
+        (o.what, o.reason) for o in whole.left_out
+    ]
+    assert whole.left_out
+    assert pieces.source.length_units == whole.source.length_units == "µm"

@@ -21,6 +21,7 @@ from cellcrawl.microscopy.columns import are_units, recognise
 BLANKS = ("", "NA", "N/A", "NaN", "nan", "NAN", "null", "NULL", "None", "none", "-", "#N/A", "?")
 _HEAD = 1 << 16  # bytes looked at to find out the form
 _SAMPLE = 60  # lines looked at
+_BLOCK = 1 << 24  # bytes read at a time
 _NUMBER = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*")
 _COMMA_NUMBER = re.compile(r"\s*[-+]?\d*,\d+([eE][-+]?\d+)?\s*")
 _NUMBER_OR_INFINITE = (
@@ -161,7 +162,7 @@ def read_cells(form: Form, places: Sequence[int]) -> Cells:
                 skip_rows=first,
                 encoding="utf-8" if encoding == "utf-8-sig" else encoding,
                 use_threads=False,  # with threads a bad row does not know its number
-                block_size=1 << 24,
+                block_size=_BLOCK,
             ),
             pa.csv.ParseOptions(delimiter=separator, invalid_row_handler=skip),
             pa.csv.ConvertOptions(

@@ -161,15 +161,24 @@ def _matrices(
     laws: Law,
 ) -> np.ndarray:
     """Slopes of the still cell in one symmetry, shape (..., 2, 2), for each of the values."""
-    names = list(values)
-    arrays = np.broadcast_arrays(*values.values()) if names else [np.zeros(())]
-    found = np.empty((arrays[0].size, 2, 2))
-    for place, at in enumerate(zip(*(array.flat for array in arrays), strict=True)):
-        p = parameters.replace(**dict(zip(names, map(float, at), strict=True))) if names else None
-        cell = p or parameters
+    shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
+    found = np.empty((*shape, 2, 2))
+    for place, cell in _cells(parameters, values, shape):
         rest = rest_state(cell, laws, 0.0)
         found[place] = _parted(_jacobian(cell, laws, anchoring, (rest, rest)), symmetry)
-    return found.reshape(*arrays[0].shape, 2, 2)
+    return found
+
+
+def _cells(
+    parameters: Parameters, values: dict[str, np.ndarray], shape: tuple[int, ...]
+) -> Iterator[tuple[tuple[int, ...], Parameters]]:
+    """Yield the place of each of the values, and the cell that has them."""
+    spread = {name: np.broadcast_to(value, shape) for name, value in values.items()}
+    for place in np.ndindex(shape):
+        yield (
+            place,
+            parameters.replace(**{name: float(value[place]) for name, value in spread.items()}),
+        )
 
 
 def _parted(matrix: np.ndarray, symmetry: str) -> np.ndarray:
@@ -234,14 +243,13 @@ def crawling_margin(
     laws: Law = PAPER,
 ) -> np.ndarray:
     """Return a number above 0 where a steadily crawling state exists."""
-    arrays = np.broadcast_arrays(*values.values())
+    shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
     if anchoring.stiffness > 0.0 and anchoring.relaxation == 0.0:
-        return np.full(arrays[0].shape, -1.0)
+        return np.full(shape, -1.0)
     part = np.linspace(0.0, 1.0, _PARTS + 1)[1:]
-    margins = np.full(arrays[0].size, -np.inf)
-    for place, at in enumerate(zip(*(array.flat for array in arrays), strict=True)):
-        p = parameters.replace(**dict(zip(values, map(float, at), strict=True)))
-        edges = MovingEdges(p, laws, _drag(anchoring), every=8)
+    margins = np.full(shape, -np.inf)
+    for place, cell in _cells(parameters, values, shape):
+        edges = MovingEdges(cell, laws, _drag(anchoring), every=8)
         for front, rear in _pairs(edges):
             fastest = min(front.fastest, rear.fastest)
             speeds = fastest * part
@@ -249,7 +257,7 @@ def crawling_margin(
             loads = (np.interp(speeds, side.velocities, side.loads) for side in (front, rear))
             rise = np.subtract(*loads) / speeds
             margins[place] = max(margins[place], float(rise.max(initial=-np.inf)))
-    return margins.reshape(arrays[0].shape)
+    return margins
 
 
 def _drag(anchoring: Anchoring) -> float:
