@@ -86,20 +86,12 @@ def branch(
     InputError
         For branches in different parameters, or another quantity.
     """
-    many = [branches] if isinstance(branches, Branch | OrbitBranch) else list(branches)
-    if not many or len({one.name for one in many}) > 1:
-        raise InputError("give one branch or more, all followed in the same parameter")
+    many = _alike(branches)
     orbits = any(isinstance(one, OrbitBranch) for one in many)
     quantity = one_of("quantity", quantity, _OF_ORBITS if orbits else _QUANTITIES)
     seen: dict[str, Any] = {}
     with axes_or_new(ax, COLUMN, 0.75 * COLUMN) as axes:
-        for one in many:
-            if isinstance(one, OrbitBranch):
-                _draw_orbits(axes, one, quantity, seen)
-            else:
-                _draw_states(axes, one, quantity, seen)
-        axes.set_xlabel(_label(many[0].name))
-        axes.set_ylabel(_QUANTITIES[quantity])
+        _draw(axes, many, quantity, seen)
         if legend and seen:
             axes.legend(list(seen.values()), list(seen), fontsize="small")
     return axes
@@ -129,16 +121,12 @@ def branch_panels(
     InputError
         For branches in different parameters.
     """
+    many = _alike(branches)
     keys: dict[str, Any] = {}
     with paper_figure(COLUMN, 2.0 * COLUMN, shown=True) as figure:
         panels = figure.subplots(3, 1, sharex=True)
         for panel, quantity in zip(panels, ("speed", "turning_rate", "tension"), strict=True):
-            branch(branches, quantity, ax=panel)
-            made = panel.get_legend()
-            if made is not None:
-                names = [text.get_text() for text in made.get_texts()]
-                keys.update(zip(names, made.legend_handles, strict=True))
-                made.remove()
+            _draw(panel, many, quantity, keys)
             panel.label_outer()
         if title:
             panels[0].set_title(title, loc="left")
@@ -147,6 +135,29 @@ def branch_panels(
                 list(keys.values()), list(keys), loc="outside lower center", ncols=3, frameon=False
             )
     return figure
+
+
+def _alike(
+    branches: Branch | OrbitBranch | Sequence[Branch | OrbitBranch],
+) -> list[Branch | OrbitBranch]:
+    """Return branches as a list, or raise `InputError` for none and for different parameters."""
+    many = [branches] if isinstance(branches, Branch | OrbitBranch) else list(branches)
+    if not many or len({one.name for one in many}) > 1:
+        raise InputError("give one branch or more, all followed in the same parameter")
+    return many
+
+
+def _draw(
+    axes: Axes, many: list[Branch | OrbitBranch], quantity: str, seen: dict[str, Any]
+) -> None:
+    """Draw branches with labelled axes; markers of special points are gathered by name."""
+    for one in many:
+        if isinstance(one, OrbitBranch):
+            _draw_orbits(axes, one, quantity, seen)
+        else:
+            _draw_states(axes, one, quantity, seen)
+    axes.set_xlabel(_label(many[0].name))
+    axes.set_ylabel(_QUANTITIES[quantity])
 
 
 def _draw_states(axes: Axes, one: Branch, quantity: str, seen: dict[str, Any]) -> None:
