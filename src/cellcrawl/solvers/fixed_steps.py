@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 import math
+import sys
 from typing import Final
 
-ON_GRID: Final = 1e-9  # a time this close to a step, in steps, is that step
+_ON_GRID: Final = 1e-9  # of a step
+_ROUNDING: Final = 4.0 * sys.float_info.epsilon  # of the time, which is the larger after long
+
+
+def slack(time: float, dt: float) -> float:
+    """Return how far a time may be from a step's and be the same."""
+    return max(_ON_GRID * dt, _ROUNDING * abs(time))
 
 
 def steps_towards(target: float, end: float, anchor: float, taken: int, dt: float) -> int:
@@ -13,8 +20,8 @@ def steps_towards(target: float, end: float, anchor: float, taken: int, dt: floa
 
     Steps are counted from ``anchor``; ``end`` is the next break, infinity if there is none.
     """
-    needed = math.ceil((target - anchor) / dt - ON_GRID) - taken
+    needed = math.ceil((target - slack(target, dt) - anchor) / dt) - taken
     if math.isfinite(end):
-        room = math.ceil((end - anchor) / dt - ON_GRID) - 1
+        room = math.ceil((end - slack(end, dt) - anchor) / dt) - 1
         needed = min(needed, room - taken)
     return max(needed, 1)

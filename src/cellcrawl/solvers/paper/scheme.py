@@ -17,7 +17,7 @@ from cellcrawl.solvers.base import (
     pointwise,
 )
 from cellcrawl.solvers.conditions import Conditions
-from cellcrawl.solvers.fixed_steps import ON_GRID, steps_towards
+from cellcrawl.solvers.fixed_steps import slack, steps_towards
 from cellcrawl.solvers.paper import step as paper_step
 from cellcrawl.solvers.paper import tangent_angle
 from cellcrawl.starts.base import CellState
@@ -80,10 +80,10 @@ class PaperSolver(Solver):
         return nodes
 
     def advance(self, target: float) -> Breakdown | None:
-        while self.time < target - ON_GRID * self._dt:
+        while self.time < target - slack(target, self._dt):
             now = self.time
             end = self._conditions.next_break(now)
-            if self._step_time(self._steps_from_anchor + 1) >= end - ON_GRID * self._dt:
+            if self._step_time(self._steps_from_anchor + 1) >= end - slack(end, self._dt):
                 breakdown = self._take(1, end - now)
                 landed: float | None = end
             else:
@@ -103,7 +103,7 @@ class PaperSolver(Solver):
     def frame(self, time: float) -> Frame:
         fields, scalars = self._fields, self._scalars
         edge = self._conditions.edge(time, self._nodes)
-        if abs(time - self.time) > ON_GRID * self._dt:
+        if abs(time - self.time) > slack(time, self._dt):
             fields, scalars, edge = self._between(time, edge)
         elif (room := self._room()) is not None:
             surround_edge(room, time, *self._edge_of(fields, scalars), edge)

@@ -10,7 +10,7 @@ import numpy as np
 from cellcrawl.errors import InputError
 from cellcrawl.solvers.base import Breakdown, Frame, Solver
 from cellcrawl.solvers.conditions import Conditions
-from cellcrawl.solvers.fixed_steps import ON_GRID, steps_towards
+from cellcrawl.solvers.fixed_steps import slack, steps_towards
 from cellcrawl.solvers.spline import balance, drive, frames, outline
 from cellcrawl.solvers.spline.outline import LOG_R, N, X, Y
 from cellcrawl.solvers.spline.runge_kutta import STAGES
@@ -76,10 +76,10 @@ class SplineSolver(Solver):
         return nodes
 
     def advance(self, target: float) -> Breakdown | None:
-        while self.time < target - ON_GRID * self._dt:
+        while self.time < target - slack(target, self._dt):
             now = self.time
             end = self._conditions.next_break(now)
-            if self._step_time(self._steps_from_anchor + 1) >= end - ON_GRID * self._dt:
+            if self._step_time(self._steps_from_anchor + 1) >= end - slack(end, self._dt):
                 breakdown = self._take(1, end - now, end)
                 if breakdown is None:
                     breakdown = self._land(end)
@@ -224,7 +224,7 @@ class SplineSolver(Solver):
         """Return the state at a time in the last step."""
         tension, angle, _ = map(float, self._scalars)
         last = frames.State(self.time, self._fields, tension, angle)
-        if abs(time - self.time) <= ON_GRID * self._dt:
+        if abs(time - self.time) <= slack(time, self._dt):
             return last._replace(time=time)
         if not self._before_time <= time <= self.time:
             raise ValueError(f"t = {time} is not within the last step, which ends at {self.time}")
