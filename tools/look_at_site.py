@@ -44,7 +44,7 @@ DARK = """(() => {
   const light = colour => Math.max(...(colour.match(/[0-9.]+/g) || [255]).slice(0, 3));
   const found = [];
   if (light(getComputedStyle(document.body).backgroundColor) > 60) found.push('light ground');
-  for (const one of document.querySelectorAll('article img'))
+  for (const one of document.querySelectorAll('article img, article iframe, article video'))
     if (getComputedStyle(one).filter === 'none') found.push('glaring ' + one.src);
   return found;
 })()"""
