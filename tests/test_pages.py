@@ -165,9 +165,8 @@ def test_a_page_that_makes_an_environment_enters_it_before_it_is_used():
     made = [page for page in PAGES if "-m venv" in page.read_text("utf-8")]
     assert made
     for page in made:
-        lines = [
-            line for kind, text in blocks(page) if kind == "console" for line, _ in commands(text)
-        ]
+        shown = [text for kind, text in blocks(page) if kind == "console"]
+        lines = [line for text in shown for line, _ in commands(text)]
         entered = next(n for n, line in enumerate(lines) if line.startswith("source .venv/bin"))
         used = [n for n, line in enumerate(lines) if line.startswith(("pip ", "cellcrawl "))]
         assert entered < min(used), page.name
