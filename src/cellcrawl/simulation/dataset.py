@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cache
 from importlib.metadata import version
 from typing import Any
 
@@ -53,6 +54,7 @@ def arrays_to_dataset(
     )
 
 
+@cache
 def package_version() -> str:
     """Return the version of the installed package."""
     return version("cellcrawl")

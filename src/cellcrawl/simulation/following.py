@@ -19,7 +19,7 @@ from cellcrawl.solvers import Breakdown, Frame, Instant, Solver
 
 Kept = TypeVar("Kept")
 _CHECK_EVERY = 0.1  # longest time between two looks for a self-crossing
-_CHECKS_PER_CHECKPOINT = 10  # a crossing is traced back from the last checkpoint
+_CHECKS_PER_CHECKPOINT = 50  # a crossing is traced back from the last checkpoint
 _SAME_TIME = 1e-9  # relative
 _MOST_RECORDS = 1e7
 
@@ -111,20 +111,24 @@ class Follower(Generic[Kept]):
     def _next_targets(self, now: float, t_end: float) -> list[tuple[float, bool]]:
         """Return the next times to look at and whether they are on the grid of saved times.
 
-        One alone where whole frames are recorded, which must be of the solver's last step.
+        Where whole frames are recorded they end with one: it must be of the solver's last step.
         """
         targets: list[tuple[float, bool]] = []
-        records = self.records
-        while len(targets) < (1 if self.recorder.edges else _CHECKS_PER_CHECKPOINT):
+        records, to_frame = self.records, self.recorder.edges
+        jump = self.law.next_look(max(now, 0.0))
+        before_end, after_end = t_end * (1.0 - _SAME_TIME), t_end * (1.0 + _SAME_TIME)
+        while len(targets) < _CHECKS_PER_CHECKPOINT:
+            if now >= jump:
+                jump = self.law.next_look(now)
             record = records * self.save_every
             check = (math.floor(now / _CHECK_EVERY + _SAME_TIME) + 1) * _CHECK_EVERY
-            check = min(check, self.law.next_look(max(now, 0.0)))
+            check = min(check, jump)
             on_grid = record <= check or same_time(record, check)
             now = record if on_grid else check
-            if now > t_end and not same_time(now, t_end):
+            if now > after_end:
                 now, on_grid = t_end, False
             targets.append((now, on_grid))
-            if now >= t_end or same_time(now, t_end):
+            if now >= before_end or (on_grid and to_frame):
                 break
             records += on_grid
         return targets

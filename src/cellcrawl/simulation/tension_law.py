@@ -61,10 +61,13 @@ class TensionLaw:
         if self.time == -math.inf:
             self._tension = seen.tension
         elif seen.time > self.time:
-            first, last = self._rate(self.time), self._rate(seen.time, before=True)
             change = seen.area - self._area
-            self._tension += 0.5 * (first + last) * change
-            self._slack += 0.5 * abs((last - first) * change)
+            if self._constant_rate is not None:
+                self._tension += self._constant_rate * change
+            else:
+                first, last = self._rate(self.time), self._rate(seen.time, before=True)
+                self._tension += 0.5 * (first + last) * change
+                self._slack += 0.5 * abs((last - first) * change)
         self.time, self._area = seen.time, seen.area
         scale = max(self._rate(seen.time) * seen.area, abs(seen.tension))
         miss = abs(seen.tension - self._tension)
