@@ -186,7 +186,10 @@ def test_links_within_the_documentation_lead_somewhere():
 
 
 def anchors(page: Path) -> set[str]:
-    """Return the anchors of a page's headings, as they are made of their text."""
-    heads = re.findall(r"^#{1,4} (.+)$", page.read_text("utf-8"), re.M)
+    """Return the anchors of a page's headings and of those of pages that it includes."""
+    text = page.read_text("utf-8")
+    for other in re.findall(r"^```\{include\} (\S+)$", text, re.M):
+        text += (page.parent / other).read_text("utf-8")
+    heads = re.findall(r"^#{1,4} (.+)$", text, re.M)
     plain = [re.sub(r"[^\w\- ]", "", head.lower()) for head in heads]
     return {head.strip().replace(" ", "-") for head in plain}
