@@ -25,7 +25,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 NOT_INSTALLED = {
     "zarr": "import cellcrawl as cc; cc.simulate(t_end=0.01, output='a.zarr')",
-    "units": "import cellcrawl as cc; cc.Units.keratocyte().quantity(1.0, 'length')",
+    "units": "import cellcrawl as cc; cc.PhysicalParameters().quantity('radius')",
     "microscopy": "import cellcrawl as cc; cc.read_outlines('some.tif')",
     "infer": "from cellcrawl.infer.neural import _torch; _torch()",
     "dask": "import cellcrawl as cc; cc.Sweep({'seed': [1]}, t_end=0.01).run(scheduler='a:1')",
