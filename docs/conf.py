@@ -32,6 +32,8 @@ html_theme = "furo"
 html_title = "cellcrawl"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
+html_js_files = ["enlarge.js"]
+html_search_scorer = str(Path(__file__).with_name("scorer.js"))
 html_show_sourcelink = False
 
 # The live cell lies beside the pages, which hold it in frames

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 import cellcrawl as cc
 from cellcrawl.citing import REFERENCES
-from cellcrawl.citing.uses import LAWS
+from cellcrawl.citing.uses import ANALYSES, LAWS, LINE, MODEL, SOLVERS
 from cellcrawl.command_line.main import run
 from cellcrawl.laws import SHIPPED
 
@@ -73,7 +75,23 @@ def test_analyses_and_the_line_are_cited():
     t = [0.1 * i for i in range(60)]
     walk = cc.observables.persistent_walk(t, [x**1.1 for x in t], [x**0.9 for x in t])
     assert "johnson2008" in keys(cc.cite(walk))
+    growth = cc.branches.LyapunovExponent(0.1, 0.01, "chaotic", 9.0, np.zeros(18))
+    assert "benettin1980" in keys(cc.cite(growth))
     assert "sens2020" in keys(cc.cite(cc.one_dimensional.simulate_two_edges(cc.Parameters(), 0.02)))
+
+
+def test_every_paper_stands_behind_something_and_every_analysis_is_a_public_class():
+    behind = [*MODEL, *LAWS.values(), *LINE]
+    behind += [pair for pairs in (*SOLVERS.values(), *ANALYSES.values()) for pair in pairs]
+    assert {key for key, _ in behind} == set(REFERENCES)
+    for name in ANALYSES:
+        assert any(hasattr(part, name) for part in (cc.observables, cc.infer, cc.branches)), name
+
+
+def test_the_page_lists_every_paper_with_its_address():
+    page = (Path(__file__).parent.parent / "docs" / "citing.md").read_text("utf-8")
+    for reference in REFERENCES.values():
+        assert f"{reference.pages} ({reference.year}). [{reference.doi}](https://doi.org/" in page
 
 
 def test_a_sweep_names_what_its_runs_used(tmp_path):

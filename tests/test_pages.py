@@ -31,7 +31,7 @@ LEFT = {
 """What a reader has in hand at the end of a page."""
 ONLY_READ = {"bank", "bench", "branches", "explore", "fit", "reproduce", "sweep", "verify"}
 """Commands that take minutes, or open a browser: their options are held to what there is."""
-SETTING_UP = ("python3 -m venv", ".venv/bin/pip install", "pip install")
+SETTING_UP = ("python3 -m venv", "source .venv/bin/activate", "pip install")
 NOT_HERE = ("dask_jobqueue", "open_bank")
 """Blocks that need a cluster, or a bank of half an hour, must be Python and no more."""
 
@@ -137,8 +137,6 @@ def commands(text: str) -> list[tuple[str, str]]:
 def run_command(line: str, said: str, where: str, capsys: pytest.CaptureFixture[str]) -> None:
     """Run a command of ours and compare what it says; of others only those that set up."""
     words = shlex.split(line, comments=True)
-    if words and words[0] == ".venv/bin/cellcrawl":
-        words[0] = "cellcrawl"
     if not words or words[0] != "cellcrawl":
         assert line.startswith(SETTING_UP), f"{where}: {line}"
         return
@@ -163,6 +161,17 @@ def matching(word: str) -> list[str]:
     return here or [word]
 
 
+def test_a_page_that_makes_an_environment_enters_it_before_it_is_used():
+    made = [page for page in PAGES if "-m venv" in page.read_text("utf-8")]
+    assert made
+    for page in made:
+        shown = [text for kind, text in blocks(page) if kind == "console"]
+        lines = [line for text in shown for line, _ in commands(text)]
+        entered = next(n for n, line in enumerate(lines) if line.startswith("source .venv/bin"))
+        used = [n for n, line in enumerate(lines) if line.startswith(("pip ", "cellcrawl "))]
+        assert entered < min(used), page.name
+
+
 def test_links_within_the_documentation_lead_somewhere():
     """Files and headings that pages link to; the builder checks the rest."""
     link = re.compile(r"\]\((?!https?:|#|mailto:)([^)#\s]+)(?:#([\w-]+))?\)")
@@ -177,7 +186,10 @@ def test_links_within_the_documentation_lead_somewhere():
 
 
 def anchors(page: Path) -> set[str]:
-    """Return the anchors of a page's headings, as they are made of their text."""
-    heads = re.findall(r"^#{1,4} (.+)$", page.read_text("utf-8"), re.M)
+    """Return the anchors of a page's headings and of those of pages that it includes."""
+    text = page.read_text("utf-8")
+    for other in re.findall(r"^```\{include\} (\S+)$", text, re.M):
+        text += (page.parent / other).read_text("utf-8")
+    heads = re.findall(r"^#{1,4} (.+)$", text, re.M)
     plain = [re.sub(r"[^\w\- ]", "", head.lower()) for head in heads]
     return {head.strip().replace(" ", "-") for head in plain}

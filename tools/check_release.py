@@ -25,9 +25,12 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 NOT_INSTALLED = {
     "zarr": "import cellcrawl as cc; cc.simulate(t_end=0.01, output='a.zarr')",
-    "units": "import cellcrawl as cc; cc.Units.keratocyte().quantity(1.0, 'length')",
-    "microscopy": "import cellcrawl as cc; cc.read_outlines('some.tif')",
-    "dask": "import cellcrawl as cc; cc.Sweep({'seed': [1]}, t_end=0.01).run(scheduler='a:1')",
+    "units": "import cellcrawl as cc; cc.PhysicalParameters().quantity('radius')",
+    "microscopy": "import cellcrawl as cc; open('a.tif', 'wb').write(b'II*\\0' + bytes(60)); "
+    "cc.read_outlines('a.tif')",
+    "infer": "from cellcrawl.infer.neural import _torch; _torch()",
+    "dask": "import cellcrawl as cc; "
+    "cc.sweep({'seed': [1]}, 'swept', t_end=0.01, executor='tcp://a:1')",
 }
 FIRST_RUN = ("simulate", "--t-end", "1", "--no-movie", "--output")
 

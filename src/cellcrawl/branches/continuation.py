@@ -91,7 +91,7 @@ def continue_in(
     most_states: int = 400,
     largest_step: float = _LARGEST,
 ) -> Branch:
-    """Follow a steady state as a parameter changes, round folds, until it comes to ``to``.
+    """Follow a steady state as a parameter changes, round folds, up to the value asked.
 
     Parameters
     ----------

@@ -190,7 +190,7 @@ def continue_orbit(
     largest_step: float = _LARGEST,
     nodes: int | None = None,
 ) -> OrbitBranch:
-    """Follow an orbit as a parameter changes, round folds, until it comes to ``to``.
+    """Follow an orbit as a parameter changes, round folds, up to the value asked.
 
     Parameters
     ----------

@@ -79,9 +79,10 @@ def cite(*used: Any) -> Citations:
 
     Parameters
     ----------
-    *used : Dataset, Sweep, Law, Surrounding, PersistentWalk or ShapeModes
+    *used : Dataset, Sweep, Law, Surrounding, PersistentWalk, ShapeModes, Fit or LyapunovExponent
         Runs, of which laws, surroundings and solver are named; runs on a line; sweeps; laws and
-        surroundings by themselves; results of fits. None: the software and its model.
+        surroundings by themselves; results of fits, also of groups, comparisons and choices.
+        None: the software and its model.
 
     Returns
     -------
@@ -139,7 +140,7 @@ def _behind(used: Any, others: list[str], versions: list[str]) -> Iterator[tuple
     else:
         raise InputError(
             f"there is nothing to cite for {shown(used)}: give runs, sweeps, laws, surroundings, "
-            "or results of persistent_walk or shape_modes"
+            "or results of persistent_walk, shape_modes, infer.fit or branches.lyapunov_exponent"
         )
 
 

@@ -211,5 +211,37 @@ _ALL: Final = (
         2007,
         "10.1111/j.1365-2818.2007.01799.x",
     ),
+    Reference(
+        "beaumont2002",
+        ("Beaumont, M. A.", "Zhang, W.", "Balding, D. J."),
+        "Approximate Bayesian computation in population genetics",
+        "Genetics",
+        "162",
+        "2025–2035",
+        2002,
+        "10.1093/genetics/162.4.2025",
+    ),
+    Reference(
+        "fearnhead2012",
+        ("Fearnhead, P.", "Prangle, D."),
+        "Constructing summary statistics for approximate Bayesian computation: semi-automatic "
+        "approximate Bayesian computation",
+        "J. R. Stat. Soc. B",
+        "74",
+        "419–474",
+        2012,
+        "10.1111/j.1467-9868.2011.01010.x",
+    ),
+    Reference(
+        "benettin1980",
+        ("Benettin, G.", "Galgani, L.", "Giorgilli, A.", "Strelcyn, J.-M."),
+        "Lyapunov characteristic exponents for smooth dynamical systems and for Hamiltonian "
+        "systems; a method for computing all of them. Part 1: Theory",
+        "Meccanica",
+        "15",
+        "9–20",
+        1980,
+        "10.1007/BF02128236",
+    ),
 )
 REFERENCES: Final = {reference.key: reference for reference in _ALL}

@@ -25,7 +25,16 @@ SOLVERS: Final = {
     "spline": (("kennedy2003", "the formulas of the spline solver in time"),),
     "stochastic": (("salmon2011", "the random numbers of the noise"),),
 }
+_FIT: Final = (
+    ("beaumont2002", "parameters from runs by approximate Bayesian computation"),
+    ("fearnhead2012", "summaries that are learned"),
+)
 ANALYSES: Final = {
+    "Fit": _FIT,
+    "Group": _FIT,
+    "Comparison": _FIT,
+    "Choice": _FIT,
+    "LyapunovExponent": (("benettin1980", "the growth of small changes"),),
     "PersistentWalk": (("johnson2008", "the fit of a persistent random walk"),),
     "ShapeModes": (
         ("pincus2007", "principal components of outlines"),
