@@ -86,6 +86,15 @@ _CACHED: Final[dict[str, Any]] = {
 }
 
 
+INLINED: Final[dict[str, Any]] = {
+    "error_model": "numpy",
+    "forceinline": True,
+    "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+}
+"""How functions are compiled that belong to a caller."""
+
+
 def kernel(function: F) -> F:
     """Compile a numerical kernel: cached on disk, divisions vectorise.
 
@@ -110,10 +119,5 @@ def inlined_kernel(function: F) -> F:
 
     Python sees the function as it was written; it works on whole arrays if its lines do.
     """
-    inlined: F = register_jitable(
-        error_model="numpy",
-        forceinline=True,
-        no_cpython_wrapper=True,
-        no_cfunc_wrapper=True,
-    )(function)
+    inlined: F = register_jitable(**INLINED)(function)
     return inlined

@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from cellcrawl.numerics.elementary import power
-from cellcrawl.numerics.kernels import kernel, woven_kernel
+from cellcrawl.numerics.kernels import inlined_kernel, kernel, woven_kernel
 from cellcrawl.solvers.adaptive.differences import (
     DIFFERENCES,
     ERRORS,
@@ -105,7 +105,7 @@ _FORGET = 0.99  # of the most missed lately, at each look: a change of nodes cos
 _LEAST_CONTRAST = 1e-7  # waves smaller than this are no longer followed to their own size
 
 
-@kernel
+@inlined_kernel
 def restart(
     laws: Any,
     around: Any,
@@ -130,9 +130,7 @@ def restart(
     read_profile(profile, g, edge, mesh, work)
     lay_out(w, n, g, _SHORT, 1, mesh, nodes)
     renew_rates(laws, y, edge, work)
-    for row in range(1, table.shape[0]):
-        for k in range(table.shape[1]):
-            table[row, k] = 0.0
+    table[1:] = 0.0
     counters[RATES] += 1
     if not rates(laws, around, control[TIME], state, rate, y, edge, mesh, work):
         return False
@@ -140,8 +138,7 @@ def restart(
     control[FORMATION] = formation(n, nodes)
     pace = relative_size(rate, state, nodes, 1.0)
     control[STEP] = _FIRST_STEP * math.sqrt(tolerance) / (1.0 + pace)
-    for k in range(rate.size):
-        rate[k] *= control[STEP]
+    _scale(rate, control[STEP])
     control[CONTRACTION] = UNKNOWN_CONTRACTION
     control[FACTORED] = 0.0
     counters[ORDER] = 1
@@ -149,7 +146,13 @@ def restart(
     return True
 
 
-@woven_kernel
+@kernel
+def _scale(a: np.ndarray, factor: float) -> None:
+    for k in range(a.size):
+        a[k] *= factor
+
+
+@inlined_kernel
 def bounded_step(h: float, time: float, end: float) -> float:
     """Return the step to try from ``time``: not too long, and landing on ``end`` evenly."""
     h = min(h, LONGEST_STEP)
