@@ -14,7 +14,7 @@ import numpy as np
 
 from cellcrawl.numerics.exponential import exponential
 from cellcrawl.numerics.fourier import BEFORE, TAPS, lagrange_weights
-from cellcrawl.numerics.kernels import kernel, woven_kernel
+from cellcrawl.numerics.kernels import inlined_kernel, kernel, woven_kernel
 from cellcrawl.solvers.adaptive.staggered import (
     HALO,
     cell_mean,
@@ -211,7 +211,7 @@ def fill_uniform(profile: np.ndarray, edge: np.ndarray) -> None:
                 edge[row, i] = profile[row, 0]
 
 
-@kernel
+@inlined_kernel
 def read_profile(
     profile: np.ndarray, g: np.ndarray, edge: np.ndarray, mesh: np.ndarray, work: np.ndarray
 ) -> None:

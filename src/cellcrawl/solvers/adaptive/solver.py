@@ -244,7 +244,8 @@ class AdaptiveSolver(Solver):
     def _begin(self, start: CellState) -> None:
         curve = start.curve
         density = np.ones(curve.nodes)
-        waves = slopes(curve.theta - layout.winding(curve.nodes), start.bound_fraction, density)
+        wobble = curve.theta - layout.winding(curve.nodes)
+        waves = slopes(wobble, start.bound_fraction.copy(), density)
         allowed = resolution.allowance(self._allowed, 0.0, False)
         if resolution.missed_on(waves, curve.nodes) > 3.0 * allowed:
             raise InputError(
