@@ -11,14 +11,21 @@ from collections.abc import Callable
 from typing import Any, Final, TypeVar, cast
 
 import numba
-from numba.core import cgutils, types
-from numba.core.typing import signature
+from numba.core import cgutils as _cgutils
+from numba.core import types as _types
+from numba.core import typing as _typing
 from numba.extending import intrinsic, overload
 
 from cellcrawl.laws.functions import LawType
 from cellcrawl.numerics.kernels import INLINED, kernel
 
 F = TypeVar("F", bound=Callable[..., Any])
+
+# Numba's own modules, most of whose functions have no types
+types: Any = _types
+cgutils: Any = _cgutils
+typing: Any = _typing
+typeof: Any = numba.typeof
 
 NUMBER: Final[Any] = types.float64
 TRUTH: Final[Any] = types.boolean
@@ -76,8 +83,8 @@ def called_by_address(returned: Any, *arguments: Any) -> Callable[[F], F]:
 
 def address(called: Any, laws: Any, around: Any) -> int:
     """Return where the kernel lies that is compiled for a law and surroundings."""
-    place = numba.typeof(around)
-    kinds = (numba.typeof(laws), *(place if kind is AROUND else kind for kind in called.arguments))
+    place = typeof(around)
+    kinds = (typeof(laws), *(place if kind is AROUND else kind for kind in called.arguments))
     called.compiled.compile(kinds)
     made = called.compiled.overloads[kinds]
     return int(made.library.get_pointer_to_function(made.fndesc.llvm_func_name))
@@ -94,7 +101,7 @@ def without_code(around: Any) -> Any:
 def _call(returned: Any, arguments: tuple[Any, ...]) -> Any:
     """Return what calls a kernel at an address with its arguments but the law, in a tuple."""
 
-    @intrinsic  # type: ignore[untyped-decorator]
+    @intrinsic
     def call(context: Any, where: Any, given: Any) -> Any:
         for kind, declared in zip(given, arguments, strict=True):
             if declared is not AROUND and types.unliteral(kind) != declared:
@@ -111,6 +118,6 @@ def _call(returned: Any, arguments: tuple[Any, ...]) -> Any:
                 convention.return_status_propagate(builder, status)
             return result
 
-        return signature(returned, where, given), generate
+        return typing.signature(returned, where, given), generate
 
     return call

@@ -86,7 +86,7 @@ _CACHED: Final[dict[str, Any]] = {
 }
 
 
-INLINED: Final[dict[str, Any]] = {
+INLINED: Final[Any] = {
     "error_model": "numpy",
     "forceinline": True,
     "no_cpython_wrapper": True,
@@ -105,7 +105,7 @@ def kernel(function: F) -> F:
     return cast(F, _compile(**_CACHED)(function))
 
 
-def woven_kernel(function: F) -> F:
+def expanded_kernel(function: F) -> F:
     """Like `kernel`, but a caller compiles it as if it were written there.
 
     For long parts with one caller or two: a kernel is otherwise optimised once by itself and again

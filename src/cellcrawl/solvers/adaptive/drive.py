@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from cellcrawl.numerics.elementary import power
-from cellcrawl.numerics.kernels import inlined_kernel, kernel, woven_kernel
+from cellcrawl.numerics.kernels import expanded_kernel, inlined_kernel, kernel
 from cellcrawl.solvers.adaptive.differences import (
     DIFFERENCES,
     ERRORS,
@@ -121,7 +121,8 @@ def restart(
 ) -> bool:
     """Take the rates under the parameters that hold now, and begin with a short step.
 
-    False where they have no root.
+    False where they have no root. Runs in Python, as what is called seldom does: in a kernel it
+    would be compiled with all that it calls once more.
     """
     nodes = y.size
     span = nodes + 2 * HALO
@@ -130,7 +131,9 @@ def restart(
     read_profile(profile, g, edge, mesh, work)
     lay_out(w, n, g, _SHORT, 1, mesh, nodes)
     renew_rates(laws, y, edge, work)
-    table[1:] = 0.0
+    for row in range(1, table.shape[0]):
+        cleared = table[row]
+        cleared[:] = 0.0
     counters[RATES] += 1
     if not rates(laws, around, control[TIME], state, rate, y, edge, mesh, work):
         return False
@@ -148,6 +151,7 @@ def restart(
 
 @kernel
 def _scale(a: np.ndarray, factor: float) -> None:
+    """Multiply all entries."""
     for k in range(a.size):
         a[k] *= factor
 
@@ -176,7 +180,7 @@ def change_step(
     counters[EQUAL_STEPS] = 0
 
 
-@woven_kernel
+@expanded_kernel
 def solve_step(
     laws: Any,
     around: Any,
@@ -245,7 +249,7 @@ def solve_step(
     return NOT_CONVERGED
 
 
-@woven_kernel
+@expanded_kernel
 def choose_step(
     error: float,
     tolerance: float,
@@ -277,7 +281,7 @@ def choose_step(
         change_step(best, h, control, counters, table)
 
 
-@woven_kernel
+@expanded_kernel
 def run(
     laws: Any,
     around: Any,

@@ -16,7 +16,7 @@ from cellcrawl.laws.force_balance import SOLVED, bond_force, solve_bonds
 from cellcrawl.laws.functions import friction, off_rate, velocity
 from cellcrawl.numerics.elementary import cosine, sine
 from cellcrawl.numerics.fourier import BEFORE, TAPS
-from cellcrawl.numerics.kernels import kernel, woven_kernel
+from cellcrawl.numerics.kernels import expanded_kernel, kernel
 from cellcrawl.solvers.adaptive.differences import interpolate
 from cellcrawl.solvers.adaptive.entries import FIELDS, LENGTH, ORIGIN_X, ORIGIN_Y, SCALARS, TENSION
 from cellcrawl.solvers.adaptive.mesh import places
@@ -208,7 +208,7 @@ def balance_frame(
         _balance(laws, sigma, edge, y, out)
 
 
-@woven_kernel
+@expanded_kernel
 def _sample(
     state: np.ndarray, work: np.ndarray, log_rate: np.ndarray, y: np.ndarray, out: np.ndarray
 ) -> None:

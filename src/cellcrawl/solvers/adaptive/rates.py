@@ -24,7 +24,7 @@ from cellcrawl.laws.functions import (
     velocity,
 )
 from cellcrawl.numerics.elementary import cosine, sine
-from cellcrawl.numerics.kernels import woven_kernel
+from cellcrawl.numerics.kernels import expanded_kernel
 from cellcrawl.solvers.adaptive.entries import (
     AREA,
     LENGTH,
@@ -56,7 +56,7 @@ _NEAR = 0.12  # a first step in log r this short is followed by a second that re
 _SETTLED = 4e-6  # a second step this short leaves an error of its cube
 
 
-@woven_kernel
+@expanded_kernel
 def velocities(
     laws: Any,
     w: np.ndarray,

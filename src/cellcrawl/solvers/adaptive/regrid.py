@@ -148,7 +148,13 @@ def bend_history(
     c = h / LEADING[order]
     factor(laws, around, control[TIME], c, state, y, edge, mesh, work, matrix)
     solve(c, state, mesh, matrix, residual)
-    table[1] += residual
+    _add(residual, table[1])
+
+
+@kernel
+def _add(change: np.ndarray, to: np.ndarray) -> None:
+    for k in range(to.size):
+        to[k] += change[k]
 
 
 @kernel
