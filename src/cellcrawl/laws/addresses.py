@@ -87,7 +87,10 @@ def address(called: Any, laws: Any, around: Any) -> int:
     kinds = (typeof(laws), *(place if kind is AROUND else kind for kind in called.arguments))
     called.compiled.compile(kinds)
     made = called.compiled.overloads[kinds]
-    return int(made.library.get_pointer_to_function(made.fndesc.llvm_func_name))
+    found = int(made.library.get_pointer_to_function(made.fndesc.llvm_func_name))
+    if found == 0:  # a call of it would end the program
+        raise RuntimeError(f"numba has no code of {called.__name__}")
+    return found
 
 
 def without_code(around: Any) -> Any:
