@@ -3,8 +3,8 @@
     python benchmarks/laws.py [--output DIR] [--compile]
 
 Runs of one cell to t = 100, in turns, so that a busy machine slows all alike; medians over the base
-run. With --compile also whole starts to t = 1: of the paper's law with nothing compiled, then of a new
-law, the same from disk, and of the new law with nothing compiled.
+run. With --compile also whole starts to t = 1: of the paper's law with nothing compiled, then of
+a new law, the same from disk, and of the new law with nothing compiled.
 """
 
 from __future__ import annotations

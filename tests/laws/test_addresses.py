@@ -1,4 +1,4 @@
-"""Kernels that are called by address: the bits of a direct call, and one compilation for all laws."""
+"""Kernels called by address: the bits of a direct call, and one compilation for all laws."""
 
 from __future__ import annotations
 
