@@ -83,6 +83,7 @@ _CACHED: Final[dict[str, Any]] = {
     "cache": _keeps_kernels(),
     "error_model": "numpy",
     "no_cfunc_wrapper": True,  # nothing calls a kernel through a C function pointer
+    "forceinline": False,  # said, or it is taken over from the inlined function that calls first
 }
 
 
