@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cellcrawl.curve.orientation import orientation
-from cellcrawl.numerics.kernels import kernel, woven_kernel
+from cellcrawl.numerics.kernels import expanded_kernel, kernel
 
 _RUN = 16
 _NONE = -1
@@ -138,7 +138,7 @@ def _folds(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> 
     return ahead <= 0.0 and orientation(ax, ay, bx, by, cx, cy) == 0
 
 
-@woven_kernel
+@expanded_kernel
 def _touch(
     ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
 ) -> bool:

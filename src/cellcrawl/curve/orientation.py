@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcrawl.numerics.kernels import kernel, woven_kernel
+from cellcrawl.numerics.kernels import expanded_kernel, kernel
 
 _FILTER = 3.3306690738754716e-16  # (3 + 16 u) u: above it the rounded determinant has the sign
 _SPLIT = 134217729.0  # 2**27 + 1 splits a double into two halves
@@ -25,7 +25,7 @@ def orientation(ax: float, ay: float, bx: float, by: float, cx: float, cy: float
     return _exact_sign(ax, ay, bx, by, cx, cy)
 
 
-@woven_kernel
+@expanded_kernel
 def _exact_sign(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
     expansion = np.zeros(12)
     size = 0
@@ -39,7 +39,7 @@ def _exact_sign(ax: float, ay: float, bx: float, by: float, cx: float, cy: float
     return 0
 
 
-@woven_kernel
+@expanded_kernel
 def _product(a: float, b: float) -> tuple[float, float]:
     """Return ``a * b`` rounded, and its exact error."""
     high = a * b
@@ -53,7 +53,7 @@ def _product(a: float, b: float) -> tuple[float, float]:
     return high, low
 
 
-@woven_kernel
+@expanded_kernel
 def _grow(expansion: np.ndarray, size: int, value: float) -> int:
     """Add ``value`` to a non-overlapping expansion in place; return its new size."""
     carry = value

@@ -22,6 +22,7 @@ _PLACES: Final = (
     "explorer/object_file.py",
     "explorer/runtime.py",
     "starts/small_waves.py",
+    "laws/addresses.py",
     "laws/balanced_edge.py",
     "laws/catch_slip.py",
     "laws/compiled.py",
@@ -41,7 +42,7 @@ _PLACES: Final = (
     "surroundings/place.py",
 )
 _ADAPTIVE: Final = "solvers/adaptive"
-_NOT_KERNELS: Final = ("__init__.py", "follow.py", "solver.py", "state.py")
+_NOT_KERNELS: Final = ("__init__.py", "follow.py", "linked.py", "solver.py", "state.py")
 _SKIPPED: Final = {
     *("COMMENT", "NL", "NEWLINE", "INDENT", "DEDENT", "ENCODING", "ENDMARKER", "STRING"),
     *("FSTRING_START", "FSTRING_END"),

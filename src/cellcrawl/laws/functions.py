@@ -23,14 +23,8 @@ from numba.extending import (
 
 from cellcrawl.numerics.elementary import cosine, hyperbolic_tangent, natural_logarithm, sine
 from cellcrawl.numerics.exponential import exponential, growth
-from cellcrawl.numerics.kernels import inlined_kernel
+from cellcrawl.numerics.kernels import INLINED, inlined_kernel
 
-_OPTIONS: Final[Any] = {
-    "error_model": "numpy",
-    "forceinline": True,
-    "no_cpython_wrapper": True,
-    "no_cfunc_wrapper": True,
-}
 _registered: dict[str, dict[str, Callable[..., Any]]] = {}
 
 
@@ -107,7 +101,7 @@ def _by_law(function: Callable[..., Any]) -> Callable[..., Any]:
     def chosen(laws: Any, *arguments: Any) -> Any:
         return _registered[laws.name][name] if isinstance(laws, LawType) else None
 
-    overload(in_python, jit_options=_OPTIONS, strict=False)(chosen)
+    overload(in_python, jit_options=INLINED, strict=False)(chosen)
     return in_python
 
 

@@ -141,14 +141,14 @@ def _side_by_side(
 def _ids(cells: Cells, columns: Columns) -> tuple[np.ndarray, list[str]]:
     """Return the code of each row's track, -1 for none, and the names; groups keep ids apart."""
     rows = cells.rows
-    parts = [place for place in columns.groups if len(cells.words(place)[1]) > 1]
+    parts = [_names_in(cells, place) for place in columns.groups]
+    parts = [(own, words) for own, words in parts if len(words) > 1]
     if "id" in columns.places:
-        parts.append(columns.places["id"])
+        parts.append(_names_in(cells, columns.places["id"]))
     if not parts:
         return np.zeros(rows, np.int64), [""]
     codes, names = np.zeros(rows, np.int64), [""]
-    for place in parts:
-        own, words = words_of(_plain_ids(cells.text(place)))
+    for own, words in parts:
         if len(names) == 1:
             codes, names = own, words
             continue
@@ -188,6 +188,11 @@ def _blocks(form: Form, codes: np.ndarray) -> tuple[np.ndarray, list[str]]:
         return codes, [""]
     numbers, blocks = np.unique(blocks, return_inverse=True)
     return blocks.astype(np.int64), [str(int(number) + 1) for number in numbers]
+
+
+def _names_in(cells: Cells, place: int) -> tuple[np.ndarray, list[str]]:
+    """Return which name of a track or group stands in each row, -1 for none, and the names."""
+    return words_of(_plain_ids(cells.text(place)))
 
 
 def _plain_ids(column: pa.ChunkedArray) -> pa.ChunkedArray:

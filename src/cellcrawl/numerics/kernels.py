@@ -83,7 +83,17 @@ _CACHED: Final[dict[str, Any]] = {
     "cache": _keeps_kernels(),
     "error_model": "numpy",
     "no_cfunc_wrapper": True,  # nothing calls a kernel through a C function pointer
+    "forceinline": False,  # said, or it is taken over from the inlined function that calls first
 }
+
+
+INLINED: Final[Any] = {
+    "error_model": "numpy",
+    "forceinline": True,
+    "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+}
+"""How functions are compiled that belong to a caller."""
 
 
 def kernel(function: F) -> F:
@@ -96,7 +106,7 @@ def kernel(function: F) -> F:
     return cast(F, _compile(**_CACHED)(function))
 
 
-def woven_kernel(function: F) -> F:
+def expanded_kernel(function: F) -> F:
     """Like `kernel`, but a caller compiles it as if it were written there.
 
     For long parts with one caller or two: a kernel is otherwise optimised once by itself and again
@@ -110,10 +120,5 @@ def inlined_kernel(function: F) -> F:
 
     Python sees the function as it was written; it works on whole arrays if its lines do.
     """
-    inlined: F = register_jitable(
-        error_model="numpy",
-        forceinline=True,
-        no_cpython_wrapper=True,
-        no_cfunc_wrapper=True,
-    )(function)
+    inlined: F = register_jitable(**INLINED)(function)
     return inlined

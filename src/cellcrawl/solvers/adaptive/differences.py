@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from cellcrawl.numerics.kernels import kernel, woven_kernel
+from cellcrawl.numerics.kernels import expanded_kernel, kernel
 
 HIGHEST_ORDER: Final = 5
 DIFFERENCES: Final = HIGHEST_ORDER + 3  # rows: one to raise the order by, one for its error
@@ -26,7 +26,7 @@ ERRORS: Final = np.array(
 )
 
 
-@woven_kernel
+@expanded_kernel
 def predict(order: int, table: np.ndarray, predicted: np.ndarray, history: np.ndarray) -> None:
     """Extrapolate by one step; leave also what the past contributes to the formula."""
     leading = LEADING[order]
@@ -43,7 +43,7 @@ def predict(order: int, table: np.ndarray, predicted: np.ndarray, history: np.nd
             history[k] += weight * row[k]
 
 
-@woven_kernel
+@expanded_kernel
 def move_on(order: int, table: np.ndarray, correction: np.ndarray) -> None:
     """Take the step whose solution is the prediction plus ``correction``."""
     above, top = table[order + 2], table[order + 1]

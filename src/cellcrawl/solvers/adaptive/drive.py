@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from cellcrawl.numerics.elementary import power
-from cellcrawl.numerics.kernels import kernel, woven_kernel
+from cellcrawl.numerics.kernels import expanded_kernel, inlined_kernel, kernel
 from cellcrawl.solvers.adaptive.differences import (
     DIFFERENCES,
     ERRORS,
@@ -105,7 +105,7 @@ _FORGET = 0.99  # of the most missed lately, at each look: a change of nodes cos
 _LEAST_CONTRAST = 1e-7  # waves smaller than this are no longer followed to their own size
 
 
-@kernel
+@inlined_kernel
 def restart(
     laws: Any,
     around: Any,
@@ -121,7 +121,8 @@ def restart(
 ) -> bool:
     """Take the rates under the parameters that hold now, and begin with a short step.
 
-    False where they have no root.
+    False where they have no root. Runs in Python, as what is called seldom does: in a kernel it
+    would be compiled with all that it calls once more.
     """
     nodes = y.size
     span = nodes + 2 * HALO
@@ -131,8 +132,8 @@ def restart(
     lay_out(w, n, g, _SHORT, 1, mesh, nodes)
     renew_rates(laws, y, edge, work)
     for row in range(1, table.shape[0]):
-        for k in range(table.shape[1]):
-            table[row, k] = 0.0
+        cleared = table[row]
+        cleared[:] = 0.0
     counters[RATES] += 1
     if not rates(laws, around, control[TIME], state, rate, y, edge, mesh, work):
         return False
@@ -140,8 +141,7 @@ def restart(
     control[FORMATION] = formation(n, nodes)
     pace = relative_size(rate, state, nodes, 1.0)
     control[STEP] = _FIRST_STEP * math.sqrt(tolerance) / (1.0 + pace)
-    for k in range(rate.size):
-        rate[k] *= control[STEP]
+    _scale(rate, control[STEP])
     control[CONTRACTION] = UNKNOWN_CONTRACTION
     control[FACTORED] = 0.0
     counters[ORDER] = 1
@@ -149,7 +149,14 @@ def restart(
     return True
 
 
-@woven_kernel
+@kernel
+def _scale(a: np.ndarray, factor: float) -> None:
+    """Multiply all entries."""
+    for k in range(a.size):
+        a[k] *= factor
+
+
+@inlined_kernel
 def bounded_step(h: float, time: float, end: float) -> float:
     """Return the step to try from ``time``: not too long, and landing on ``end`` evenly."""
     h = min(h, LONGEST_STEP)
@@ -173,7 +180,7 @@ def change_step(
     counters[EQUAL_STEPS] = 0
 
 
-@woven_kernel
+@expanded_kernel
 def solve_step(
     laws: Any,
     around: Any,
@@ -242,7 +249,7 @@ def solve_step(
     return NOT_CONVERGED
 
 
-@woven_kernel
+@expanded_kernel
 def choose_step(
     error: float,
     tolerance: float,
@@ -274,7 +281,7 @@ def choose_step(
         change_step(best, h, control, counters, table)
 
 
-@woven_kernel
+@expanded_kernel
 def run(
     laws: Any,
     around: Any,

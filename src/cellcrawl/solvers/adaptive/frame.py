@@ -11,11 +11,12 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from cellcrawl.laws.addresses import AROUND, NOTHING, NUMBER, ROWS, called_by_address
 from cellcrawl.laws.force_balance import SOLVED, bond_force, solve_bonds
 from cellcrawl.laws.functions import friction, off_rate, velocity
 from cellcrawl.numerics.elementary import cosine, sine
 from cellcrawl.numerics.fourier import BEFORE, TAPS
-from cellcrawl.numerics.kernels import kernel
+from cellcrawl.numerics.kernels import expanded_kernel, kernel
 from cellcrawl.solvers.adaptive.differences import interpolate
 from cellcrawl.solvers.adaptive.entries import FIELDS, LENGTH, ORIGIN_X, ORIGIN_Y, SCALARS, TENSION
 from cellcrawl.solvers.adaptive.mesh import places
@@ -172,12 +173,23 @@ def fill_frame(
     all along the edge; ``edge`` has room for them at every node, and a row more.
     """
     nodes, rows = out.shape[1], profile.shape[0]
-    y = edge[rows]
-    _sample(state, work, log_rate, y, out)
+    _sample(state, work, log_rate, edge[rows], out)
     for row in range(rows):
         for i in range(nodes):
             edge[row, i] = profile[row, 0 if profile.shape[1] == 1 else i]
-    sigma = state[state.size - SCALARS + TENSION]
+    balance_frame(laws, around, time, state[state.size - SCALARS + TENSION], edge, out)
+
+
+@called_by_address(NOTHING, AROUND, NUMBER, NUMBER, ROWS, ROWS)
+def balance_frame(
+    laws: Any, around: Any, time: float, sigma: float, edge: np.ndarray, out: np.ndarray
+) -> None:
+    """Fill the rows of ``out`` that follow from the balance of forces; see `fill_frame`.
+
+    The last row of ``edge`` has a guess of phi.
+    """
+    nodes, rows = out.shape[1], edge.shape[0] - 1
+    y = edge[rows]
     if around is not None:
         for i in range(nodes):
             out[_VELOCITY, i] = cosine(out[2, i])
@@ -196,7 +208,7 @@ def fill_frame(
         _balance(laws, sigma, edge, y, out)
 
 
-@kernel
+@expanded_kernel
 def _sample(
     state: np.ndarray, work: np.ndarray, log_rate: np.ndarray, y: np.ndarray, out: np.ndarray
 ) -> None:

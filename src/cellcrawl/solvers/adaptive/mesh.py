@@ -14,7 +14,7 @@ import numpy as np
 
 from cellcrawl.numerics.exponential import exponential
 from cellcrawl.numerics.fourier import BEFORE, TAPS, lagrange_weights
-from cellcrawl.numerics.kernels import kernel, woven_kernel
+from cellcrawl.numerics.kernels import expanded_kernel, inlined_kernel, kernel
 from cellcrawl.solvers.adaptive.staggered import (
     HALO,
     cell_mean,
@@ -39,7 +39,7 @@ _LEAST_DENSITY = 0.02
 _HALO = np.uint64(HALO)
 
 
-@woven_kernel
+@expanded_kernel
 def hold(g: np.ndarray, mesh: np.ndarray, nodes: int) -> None:
     """Leave in ``mesh`` what the rates need of a density, whose halo is filled here."""
     fine, fine_node = mesh[FINE], mesh[FINE_NODE]
@@ -141,7 +141,7 @@ def lay_out(
         mesh[CHANGE, i] = rate * (mesh[GOAL, i] - g[i])
 
 
-@woven_kernel
+@expanded_kernel
 def relax(
     c: float,
     h: float,
@@ -211,7 +211,7 @@ def fill_uniform(profile: np.ndarray, edge: np.ndarray) -> None:
                 edge[row, i] = profile[row, 0]
 
 
-@kernel
+@inlined_kernel
 def read_profile(
     profile: np.ndarray, g: np.ndarray, edge: np.ndarray, mesh: np.ndarray, work: np.ndarray
 ) -> None:

@@ -13,6 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from cellcrawl.laws.addresses import AROUND, NOTHING, NUMBER, ROW, ROWS, called_by_address
 from cellcrawl.laws.functions import balance, partials, velocity
 from cellcrawl.numerics.cyclic import FACTOR_ROWS, factor_cyclic_tridiagonal, solve_factored
 from cellcrawl.numerics.elementary import cosine, sine
@@ -80,7 +81,7 @@ def _through_the_parameters(
     return (after - before) / MORE_CURVED, (faster - slower) / MORE_CURVED
 
 
-@kernel
+@called_by_address(NOTHING, AROUND, NUMBER, NUMBER, ROW, ROW, ROWS, ROWS, ROWS, ROWS)
 def factor(
     laws: Any,
     around: Any,

@@ -13,7 +13,7 @@ import numpy as np
 
 from cellcrawl.curve.sines import sine_and_cosine
 from cellcrawl.numerics.elementary import hypotenuse
-from cellcrawl.numerics.kernels import kernel, woven_kernel
+from cellcrawl.numerics.kernels import expanded_kernel, kernel
 from cellcrawl.solvers.adaptive.entries import AREA, LENGTH, ORIGIN_X, ORIGIN_Y
 from cellcrawl.solvers.adaptive.staggered import (
     HALO,
@@ -68,7 +68,7 @@ def trace(
     return gap_x, gap_y, 0.5 * spacing * area, share * moment_x, share * moment_y
 
 
-@woven_kernel
+@expanded_kernel
 def _integral(
     slope: np.ndarray, g: np.ndarray, spacing: float, nodes: int, spare: np.ndarray, x: np.ndarray
 ) -> float:

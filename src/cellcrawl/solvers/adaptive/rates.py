@@ -14,6 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from cellcrawl.laws.addresses import AROUND, NOTHING, NUMBER, ROW, ROWS, TRUTH, called_by_address
 from cellcrawl.laws.force_balance import SOLVED, halley_step, solve_bonds
 from cellcrawl.laws.functions import (
     binding,
@@ -23,7 +24,7 @@ from cellcrawl.laws.functions import (
     velocity,
 )
 from cellcrawl.numerics.elementary import cosine, sine
-from cellcrawl.numerics.kernels import kernel, woven_kernel
+from cellcrawl.numerics.kernels import expanded_kernel
 from cellcrawl.solvers.adaptive.entries import (
     AREA,
     LENGTH,
@@ -55,7 +56,7 @@ _NEAR = 0.12  # a first step in log r this short is followed by a second that re
 _SETTLED = 4e-6  # a second step this short leaves an error of its cube
 
 
-@woven_kernel
+@expanded_kernel
 def velocities(
     laws: Any,
     w: np.ndarray,
@@ -108,7 +109,7 @@ def velocities(
     return True
 
 
-@kernel
+@called_by_address(TRUTH, AROUND, NUMBER, ROW, ROW, ROW, ROWS, ROWS, ROWS)
 def rates(
     laws: Any,
     around: Any,
@@ -193,7 +194,7 @@ def rates(
     return True
 
 
-@kernel
+@called_by_address(NOTHING, ROW, ROWS, ROWS)
 def renew_rates(laws: Any, y: np.ndarray, edge: np.ndarray, work: np.ndarray) -> None:
     """Make the off-rate at ``y`` in row `RATE` of ``work`` anew."""
     rate = work[RATE]

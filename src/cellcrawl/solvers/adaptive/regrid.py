@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cellcrawl.numerics.kernels import kernel
+from cellcrawl.numerics.kernels import inlined_kernel, kernel
 from cellcrawl.solvers.adaptive.differences import DIFFERENCES, LEADING
 from cellcrawl.solvers.adaptive.drive import (
     CHECK_DUE,
@@ -38,7 +38,7 @@ from cellcrawl.solvers.adaptive.staggered import HALO
 from cellcrawl.solvers.adaptive.waves import resample, slopes
 
 
-@kernel
+@inlined_kernel
 def wanted_nodes(
     allowed: float,
     fewest: int,
@@ -62,7 +62,7 @@ def wanted_nodes(
     return fewest_nodes(slopes(w[inner], n[inner], g[inner]), may_miss, fewest, nodes - 1)
 
 
-@kernel
+@inlined_kernel
 def move_states(states: np.ndarray, moved: np.ndarray) -> None:
     """Fill ``moved`` with an even number of states on another number of nodes, node 0 in place."""
     old = (states.shape[1] - SCALARS) // FIELDS - 2 * HALO
@@ -87,7 +87,7 @@ def move_states(states: np.ndarray, moved: np.ndarray) -> None:
             ]
 
 
-@kernel
+@inlined_kernel
 def move_to_nodes(
     laws: Any,
     around: Any,
@@ -107,15 +107,17 @@ def move_to_nodes(
     old, new = old_y.size, y.size
     move_states(old_table[:DIFFERENCES], table[:DIFFERENCES])
     resample(old_y, old_y, math.pi / new - math.pi / old, y, y)
-    control[MISSED] *= (old / new) ** 10
-    control[PEAK] *= (old / new) ** 5
+    ratio = old / new  # products, of which Python and a kernel make the same bits
+    fourth = (ratio * ratio) * (ratio * ratio)
+    control[MISSED] *= (ratio * ratio) * (fourth * fourth)
+    control[PEAK] *= ratio * fourth
     span = new + 2 * HALO
     read_profile(profile, table[0, 2 * span : 3 * span], edge, mesh, work)
     counters[RATES] += 1
     bend_history(laws, around, control, counters, table, y, edge, mesh, matrix, work)
 
 
-@kernel
+@inlined_kernel
 def bend_history(
     laws: Any,
     around: Any,
@@ -142,13 +144,24 @@ def bend_history(
     renew_rates(laws, y, edge, work)
     if not rates(laws, around, control[TIME], state, residual, y, edge, mesh, work):
         return
+    _find_kink(order, h, table, residual)
+    c = h / LEADING[order]
+    factor(laws, around, control[TIME], c, state, y, edge, mesh, work, matrix)
+    solve(c, state, mesh, matrix, residual)
+    _add(residual, table[1])
+
+
+@kernel
+def _add(change: np.ndarray, to: np.ndarray) -> None:
+    for k in range(to.size):
+        to[k] += change[k]
+
+
+@kernel
+def _find_kink(order: int, h: float, table: np.ndarray, residual: np.ndarray) -> None:
+    """Turn rates into what they are off from those of the past, over a step."""
     for k in range(residual.size):
         past = 0.0
         for j in range(1, order + 1):
             past += table[j, k] / j
         residual[k] = h * residual[k] - past
-    c = h / LEADING[order]
-    factor(laws, around, control[TIME], c, state, y, edge, mesh, work, matrix)
-    solve(c, state, mesh, matrix, residual)
-    for k in range(residual.size):
-        table[1, k] += residual[k]

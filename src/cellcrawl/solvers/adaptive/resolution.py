@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from cellcrawl.numerics.elementary import sine
-from cellcrawl.numerics.kernels import kernel
+from cellcrawl.numerics.kernels import inlined_kernel, kernel
 from cellcrawl.solvers.adaptive.entries import FIELDS
 from cellcrawl.solvers.adaptive.staggered import (
     HALO,
@@ -85,7 +85,7 @@ def formation(n: np.ndarray, nodes: int) -> float:
     return min(math.sqrt(square / nodes) / _FORMED, 1.0)
 
 
-@kernel
+@inlined_kernel
 def allowance(allowed: float, contrast: float, formed: bool) -> float:
     """What may be missed now.
 
@@ -122,7 +122,7 @@ def fewest_nodes(waves: np.ndarray, allowed: float, low: int, high: int) -> int:
     return high + 1
 
 
-@kernel
+@inlined_kernel
 def finer(nodes: int, high: int) -> int:
     """Return the next larger node count up to ``high``; ``nodes`` if there is none."""
     for count in NODE_COUNTS:
@@ -131,7 +131,7 @@ def finer(nodes: int, high: int) -> int:
     return nodes
 
 
-@kernel
+@inlined_kernel
 def coarser(nodes: int, low: int) -> int:
     """Return the next smaller node count from ``low`` on; ``nodes`` if there is none."""
     found = nodes

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
 
 from cellcrawl.errors import InputError
+from cellcrawl.laws.addresses import without_code
 from cellcrawl.numerics.elementary import natural_logarithm
 from cellcrawl.solvers.adaptive import drive, resolution
 from cellcrawl.solvers.adaptive import state as layout
@@ -21,6 +23,7 @@ from cellcrawl.solvers.adaptive.frame import (
     measure,
     room_for_shape,
 )
+from cellcrawl.solvers.adaptive.linked import Linked, linked
 from cellcrawl.solvers.adaptive.mesh import MESH_ROWS
 from cellcrawl.solvers.adaptive.newton import MATRIX_ROWS
 from cellcrawl.solvers.adaptive.place import Around, around
@@ -126,8 +129,8 @@ class AdaptiveSolver(Solver):
                 return seen, self._no_root(now)
             profile, ramping = self._next_parameters(now, end)
             done, code = follow(
-                self._laws,
-                self._around,
+                self._linked,
+                without_code(self._around),
                 times[seen:],
                 end,
                 self._tolerance,
@@ -171,7 +174,8 @@ class AdaptiveSolver(Solver):
         shape = self._shape(time)
         if self._placed is not None and self._around is not None:
             self._placed.motion[:] = self._around.motion
-        return frame(self._laws, self._placed, shape, self._log_rate, profile, self._nodes)
+        placed = without_code(self._placed)
+        return frame(self._linked, placed, shape, self._log_rate, profile, self._nodes)
 
     def _shape(self, time: float) -> Shape:
         """Return the edge at ``time``, measured once."""
@@ -240,7 +244,8 @@ class AdaptiveSolver(Solver):
     def _begin(self, start: CellState) -> None:
         curve = start.curve
         density = np.ones(curve.nodes)
-        waves = slopes(curve.theta - layout.winding(curve.nodes), start.bound_fraction, density)
+        wobble = curve.theta - layout.winding(curve.nodes)
+        waves = slopes(wobble, start.bound_fraction.copy(), density)
         allowed = resolution.allowance(self._allowed, 0.0, False)
         if resolution.missed_on(waves, curve.nodes) > 3.0 * allowed:
             raise InputError(
@@ -284,6 +289,10 @@ class AdaptiveSolver(Solver):
         self._control[drive.FACTORED] = 0.0
         self._tally[0] = min(self._tally[0] or nodes, nodes)
         self._tally[1] = max(self._tally[1], nodes)
+
+    @functools.cached_property
+    def _linked(self) -> Linked:
+        return linked(self._laws, self._around, self._placed)
 
     def _restart(self) -> bool:
         """Begin anew under the parameters that hold now; False if they allow no root."""

@@ -62,7 +62,8 @@ def from_cell(cell: CellState, nodes: int) -> np.ndarray:
     """State of a cell on ``nodes`` nodes."""
     state = np.zeros(size(nodes))
     curve = cell.curve
-    wobble, bound_fraction = curve.theta - winding(curve.nodes), cell.bound_fraction
+    wobble = curve.theta - winding(curve.nodes)
+    bound_fraction = cell.bound_fraction.copy()  # kernels compile anew for what is read-only
     if nodes != curve.nodes:
         resample(wobble, wobble, 0.0, angle(state), angle(state))
         resample(bound_fraction, bound_fraction, math.pi / nodes, bound(state), bound(state))
