@@ -179,10 +179,10 @@ def _of_run(run: xr.Dataset) -> Cell:
     edge = kept["x"].values + 1j * kept["y"].values - centre[:, None]
     modes = films.modes_of_edge(edge.real, edge.imag)
     # The same errors of the same run: whoever fits it again finds the same.
-    centre, modes = camera.least(centre, modes, np.random.default_rng(len(centre)))
+    centre, seen = camera.least(centre, modes, np.random.default_rng(len(centre)))
     step = _even("the run", time[late])
     note = f"the first {films.TRANSIENT:g}/k_off0, in which a resting cell starts, are left out"
-    return Cell("run", step, centre, modes, 0.0, True, (note,))
+    return Cell("run", step, centre, seen, 0.0, True, (note,))
 
 
 def _of_outlines(outlines: Outlines, name: str, wanted: int = 0) -> Cell:
