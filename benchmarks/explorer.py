@@ -1,8 +1,8 @@
-"""Measure the live cell in Chromium: first picture, frames, speed, size, memory.
+"""Measure the live cell in Chromium: first picture, frames, speed, size, memory; and in node.
 
 ``python benchmarks/explorer.py`` writes ``benchmarks/results/explorer.json``; it takes two minutes
 on a quiet machine. Memory is looked at while the page computes, at full speed, as much as it shows
-in an hour.
+in an hour. ``python tools/explorer_page.py`` puts the figures into the page on the live cell.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import gzip
 import json
 import os
 import platform
+import shutil
 import sys
 import tempfile
 import time
@@ -20,9 +21,12 @@ from typing import Any
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
+from tests.explorer import node  # noqa: E402
 from tests.explorer.browser import Browser, chromium  # noqa: E402
 
 import cellcrawl as cc  # noqa: E402
+from cellcrawl.explorer.content import content  # noqa: E402
+from cellcrawl.explorer.show import shipped_module  # noqa: E402
 
 HOUR = 5.0 * 3600.0  # time units that the page shows in an hour
 LOOKS = 12
@@ -57,6 +61,19 @@ SPEED = """(() => {
 })()"""
 
 
+IN_NODE = """
+const module = new WebAssembly.Module(fs.readFileSync(given.module));
+const {setup} = $link.read(given.link);
+const {cell} = new $run.Run(module, setup);
+return [0, 1, 2, 3].map(() => {
+  cell.begin(setup.parameters, 2);
+  const began = performance.now();
+  cell.advance(100);
+  return 100000 / (performance.now() - began);
+});
+"""
+
+
 def measure() -> dict[str, Any]:
     """Return all numbers."""
     page = cc.explore(view="full").save(Path(tempfile.mkdtemp()) / "cell.html")
@@ -85,7 +102,19 @@ def measure() -> dict[str, Any]:
         }
         found["memory"] = _memory(browser)
         found["errors"] = browser.errors
+    found["time_units_per_second_in_node"] = _in_node()
     return found
+
+
+def _in_node() -> list[float] | None:
+    """Return time units a second without a browser, None where node is not on the machine."""
+    if shutil.which("node") is None:
+        return None
+    with tempfile.TemporaryDirectory() as folder:
+        module = Path(folder) / "module.wasm"
+        module.write_bytes(shipped_module())
+        given = {"module": str(module), "link": LINK.removeprefix("#")}
+        return node.run("link", content(), IN_NODE, given, Path(folder))
 
 
 def _speeds(browser: Browser, link: str) -> list[float]:

@@ -23,31 +23,56 @@ LAWS = {  # the law's number, from the paper's to another, and what it is
     "chi": (cc.laws.Stiffness(), 1.0, 0.6, "stiffness of ground and bond in series"),
     "sweep": (cc.laws.SweptMyosin(), 0.0, 1.5, "share of myosin swept along by the flow"),
 }
+
+
+def onset(law, name, first, last):
+    """Return lower and upper on-rate of the onset and the law's number, shape (values, 3).
+
+    Where no round cell glides any more the two meet, in a parabola: denser values near there.
+    """
+
+    def at(value):
+        found = cc.branches.onsets(cell, "r_on", 2.0, 150.0, laws=law.replace(**{name: value}))
+        return [found[0], found[-1], value] if len(found) > 1 else None
+
+    rows, reached = [], None
+    for value in np.linspace(first, last, 25):
+        reached = at(float(value))
+        if reached is None:
+            break
+        rows.append(reached)
+    if reached is None:
+        begins, ends = rows[-1][2], float(value)
+        for _ in range(9):
+            middle = 0.5 * (begins + ends)
+            begins, ends = (middle, ends) if at(middle) else (begins, middle)
+        gap = begins - rows[-1][2]
+        rows += [at(begins - gap * part**2) for part in np.linspace(0.9, 0.0, 7)]
+    return np.array(rows), reached is None
+
+
 plt.rcParams.update(cc.plot.house_style())
 kept = {}
 for name, (law, first, last, meaning) in LAWS.items():
     span = min(first, last), max(first, last)
-    rows = []  # the lower and the upper onset at each value
-    for value in np.linspace(first, last, 13):
-        changed = law.replace(**{name: float(value)})
-        found = cc.branches.onsets(cell, "r_on", 2.0, 150.0, laws=changed)
-        rows.append([found[0], found[-1], float(value)] if len(found) > 1 else [np.nan] * 3)
-    low, high, values = np.array(rows)[np.isfinite(rows).all(axis=1)].T
-    onset = np.array([[*low, np.nan, *high], [*values, np.nan, *values]])  # open at the top
+    rows, closed = onset(law, name, first, last)
+    low, high, values = rows.T
+    gap = [] if closed else [np.nan]  # between two curves that do not meet
+    edge = np.array([[*low, *gap, *high[::-1]], [*values, *gap, *values[::-1]]])
     gliding = cc.branches.from_circle(cell, laws=law).continue_in("r_on", 17.0)
     wobble = gliding.points("Hopf")[-1].continue_in(
         name, within={"r_on": (2, 150), name: span}, most_points=40, largest_step=0.3
     )
     print(name, wobble, *wobble.messages, sep="\n  ", flush=True)
     figure, ax = plt.subplots(figsize=(3.4, 3.2), layout="constrained")
-    (begins,) = ax.plot(*onset, "k-", linewidth=1.0)
+    (begins,) = ax.plot(*edge, "k-", linewidth=1.0)
     (wobbles,) = ax.plot(*wobble.values.T, color="#009e73", linewidth=1.4)
     ax.set(xlabel=r"on-rate $r_\mathrm{on}$", ylabel=meaning, xlim=(0, 1.1 * high.max()), ylim=span)
     figure.legend([begins, wobbles], ["the round cell begins to glide", "gliding begins to wobble"],
                   loc="outside upper center", frameon=False)  # fmt: skip
     figure.savefig(folder / f"law-{name}.png", dpi=200)
     kept[name] = {
-        "onset": np.array([low, high, values]).T.round(8).tolist(),
+        "onset": rows.round(8).tolist(),
         "wobble": wobble.values.round(8).tolist(),
         "ends": list(wobble.messages),
     }  # fmt: skip

@@ -43,6 +43,14 @@ def test_each_special_point_changes_the_number_of_growing_changes_by_its_own(bra
     assert steps == sum(weight[point.kind] for point in branch.special_points)
 
 
+def test_a_line_becomes_solid_at_the_special_point_itself(branch):
+    lines = [line for line in cc.plot.branch(branch).lines if line.get_linestyle() == "-"]
+    solid = [sorted((line.get_xdata()[0], line.get_xdata()[-1])) for line in lines]
+    assert np.allclose(solid[0], (54.817202, branch.values[0]), atol=1e-6)
+    assert np.allclose(solid[1], (16.9, 17.576447), atol=1e-6)
+    assert len(solid) == 2
+
+
 def test_turning_leaves_gliding_at_the_pitchfork_and_ends_at_a_hopf_point(branch):
     turner = branch.special_points[0].branch_off()
     assert turner.kind == "turning"

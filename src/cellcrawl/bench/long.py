@@ -30,6 +30,7 @@ _FAR: Final = {(36, 560): 20.0}
 _CHANGE: Final = 1e-5  # of the bound fraction at the start
 _EXACT: Final = 1e-7
 _ERROR: Final = 1e-3  # at which times are compared
+_TURNS: Final = 4  # more of each run, for other work on the machine only adds to a time
 _AGAINST_CVODE: Final = ((26, 600), (16, 600), (24, 540))
 _TRIED: Final = (5e-4, 3e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5)  # for the fastest run with that error
 _GRIDS: Final = tuple((nodes, rtol) for nodes in (256, 320, 384, 448, 512) for rtol in (1e-6, 1e-7))
@@ -230,12 +231,14 @@ def _took(seconds: float, setting: str) -> str:
 
 
 def _fastest(settings: Mapping[str, Callable[[], Solve]], truth: np.ndarray) -> tuple[float, str]:
-    """Return the least time and the setting of those whose error is small enough."""
+    """Return the least of some times, and the setting, of those whose error is small enough."""
     best, where = math.inf, ""
     for name, prepared in settings.items():
         found, seconds, _ = timed(prepared)
-        if errors(found, truth).largest <= _ERROR and seconds < best:
-            best, where = seconds, name
+        if errors(found, truth).largest <= _ERROR:
+            seconds = min(seconds, *(timed(prepared)[1] for _ in range(_TURNS)))
+            if seconds < best:
+                best, where = seconds, name
     return best, where
 
 

@@ -81,7 +81,7 @@ class SpecialPoint:
 
         return curve_of(self, second, **options)
 
-    def branch_off(self, *, amplitude: float = 0.03) -> SteadyState:
+    def branch_off(self, *, amplitude: float = 0.01) -> SteadyState:
         """Return a state that leaves the branch here; see `cellcrawl.branches.branch_off`."""
         from cellcrawl.branches.switching import branch_off
 

@@ -29,7 +29,7 @@ _STILL = 1e-5  # turning rate of a state that has fallen back onto gliding ones
 
 @checked
 @on_one_thread
-def branch_off(point: SpecialPoint, *, amplitude: float = 0.03) -> SteadyState:
+def branch_off(point: SpecialPoint, *, amplitude: float = 0.01) -> SteadyState:
     """Return a state on the branch that leaves at a special point.
 
     Parameters

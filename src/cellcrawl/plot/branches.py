@@ -164,20 +164,22 @@ def _draw_states(axes: Axes, one: Branch, quantity: str, seen: dict[str, Any]) -
     values = np.array([abs(getattr(state, quantity)) for state in one])
     colour = _TURNING if one[0].kind == TURNING else _GLIDING
     stable = np.array([one.spectra and state.stable for state in one])
-    _draw_line(axes, one.values, values, stable, colour)
-    for point in one.special_points:
-        height = abs(getattr(point.state, quantity))
+    points = one.special_points
+    heights = np.array([abs(getattr(point.state, quantity)) for point in points])
+    _draw_line(axes, one, values, points, heights, stable, colour)
+    for point, height in zip(points, heights, strict=True):
         _mark(axes, point.kind, point.value, height, seen)
 
 
 def _draw_orbits(axes: Axes, one: OrbitBranch, quantity: str, seen: dict[str, Any]) -> None:
     colour = MODE_SYMBOLS["zigzag"].colour if one[0].reflected else ORBIT
     stable = np.array([one.spectra and orbit.stable for orbit in one])
-    values = np.array([_of_orbit(orbit, quantity) for orbit in one])
-    for column in values.T:
-        _draw_line(axes, one.values, column, stable, colour)
-    for point in one.special_points:
-        for height in _of_orbit(point.orbit, quantity):
+    points = one.special_points
+    both = np.array([_of_orbit(orbit, quantity) for orbit in one]).reshape(-1, 2)
+    at_points = np.array([_of_orbit(point.orbit, quantity) for point in points]).reshape(-1, 2)
+    for values, heights in zip(both.T, at_points.T, strict=True):
+        _draw_line(axes, one, values, points, heights, stable, colour)
+        for point, height in zip(points, heights, strict=True):
             _mark(axes, point.kind, point.value, height, seen)
 
 
@@ -189,12 +191,26 @@ def _of_orbit(orbit: Any, quantity: str) -> tuple[float, float]:
 
 
 def _draw_line(
-    axes: Axes, across: np.ndarray, values: np.ndarray, stable: np.ndarray, colour: Any
+    axes: Axes,
+    one: Branch | OrbitBranch,
+    values: np.ndarray,
+    points: Sequence[Any],
+    heights: np.ndarray,
+    stable: np.ndarray,
+    colour: Any,
 ) -> None:
-    for first, last, solid in _pieces(stable):
+    """Draw a measure along a branch, through its special points, where stability changes."""
+    places = np.append(np.arange(stable.size), [point.position for point in points])
+    order = np.argsort(places, kind="stable")
+    across = np.append(one.values, [point.value for point in points])[order]
+    along = np.append(values, heights)[order]
+    state = (np.arange(places.size) < stable.size)[order]
+    holds = np.append(stable, np.full(len(points), True))[order]
+    solid = holds[:-1] & holds[1:] & (state[:-1] | state[1:])  # unknown between two points: dotted
+    for first, last, whole in _pieces(solid):
         axes.plot(
-            across[first : last + 1], values[first : last + 1],
-            color=colour, linestyle="-" if solid else ":", linewidth=1.4 if solid else 1.0,
+            across[first : last + 1], along[first : last + 1],
+            color=colour, linestyle="-" if whole else ":", linewidth=1.4 if whole else 1.0,
         )  # fmt: skip
 
 
@@ -288,13 +304,12 @@ def _label(name: str) -> str:
     return parameter_label(name) if name in PARAMETER_NAMES else name
 
 
-def _pieces(stable: np.ndarray) -> list[tuple[int, int, bool]]:
-    """Return first and last state of each piece between two neighbours of one kind."""
+def _pieces(solid: np.ndarray) -> list[tuple[int, int, bool]]:
+    """Return first and last place of each piece whose stretches are alike."""
     made: list[tuple[int, int, bool]] = []
-    for k in range(stable.size - 1):
-        solid = bool(stable[k] and stable[k + 1])
-        if made and made[-1][2] == solid:
-            made[-1] = (made[-1][0], k + 1, solid)
+    for k, one in enumerate(solid.tolist()):
+        if made and made[-1][2] == one:
+            made[-1] = (made[-1][0], k + 1, one)
         else:
-            made.append((k, k + 1, solid))
+            made.append((k, k + 1, one))
     return made

@@ -111,13 +111,13 @@ class Follower(Generic[Kept]):
     def _next_targets(self, now: float, t_end: float) -> list[tuple[float, bool]]:
         """Return the next times to look at and whether they are on the grid of saved times.
 
-        One alone where whole frames are recorded, which must be of the solver's last step.
+        Where whole frames are recorded they end with one: it must be of the solver's last step.
         """
         targets: list[tuple[float, bool]] = []
-        records, most = self.records, 1 if self.recorder.edges else _CHECKS_PER_CHECKPOINT
+        records, to_frame = self.records, self.recorder.edges
         jump = self.law.next_look(max(now, 0.0))
         before_end, after_end = t_end * (1.0 - _SAME_TIME), t_end * (1.0 + _SAME_TIME)
-        while len(targets) < most:
+        while len(targets) < _CHECKS_PER_CHECKPOINT:
             if now >= jump:
                 jump = self.law.next_look(now)
             record = records * self.save_every
@@ -128,7 +128,7 @@ class Follower(Generic[Kept]):
             if now > after_end:
                 now, on_grid = t_end, False
             targets.append((now, on_grid))
-            if now >= before_end:
+            if now >= before_end or (on_grid and to_frame):
                 break
             records += on_grid
         return targets
