@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import cellcrawl as cc
-from cellcrawl.infer import films
+from cellcrawl.infer import films, regression
 from cellcrawl.sweeps.executors import InProcess
 from cellcrawl.sweeps.worker import Outcome
 
@@ -81,6 +81,14 @@ def make_bank(runs, output, turning=0.0, **named):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(films, "execute", functools.partial(swim, turning=turning))
         return cc.infer.bank(PRIOR, runs, output, t_end=T_END, executor=InProcess(), **named)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _steps():
+    """Train no longer than made-up films need; all alike, as what is learned is kept."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(regression, "_FEWEST_STEPS", 120)
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -9,7 +9,7 @@ import pytest
 
 import cellcrawl as cc
 from cellcrawl.command_line.main import run
-from cellcrawl.infer import bank_file, page, pictures, regression
+from cellcrawl.infer import bank_file, page, pictures
 from tests.infer.conftest import swimmer
 
 FILMED = ["--pixel-size", "0.1 um", "--frame-interval", "0.5 s"]
@@ -17,8 +17,7 @@ FILMED = ["--pixel-size", "0.1 um", "--frame-interval", "0.5 s"]
 
 @pytest.fixture(autouse=True)
 def _quick(monkeypatch):
-    """Train and draw as little as will do: what is asked here is what the commands do with it."""
-    monkeypatch.setattr(regression, "_FEWEST_STEPS", 100)
+    """Draw as little as will do: what is asked here is what the commands do with it."""
     monkeypatch.setattr(page, "_DPI", 30)
     monkeypatch.setattr(pictures, "foretold", lambda fit: [])  # runs of the solver
 

@@ -5,7 +5,7 @@ import pytest
 
 import cellcrawl as cc
 from cellcrawl.infer import neural
-from tests.infer.conftest import make_bank, swimmer
+from tests.infer.conftest import swimmer
 
 pytest.importorskip("sbi", reason="needs the extra cellcrawl[infer]")
 UNIT = {"time_unit": (0.8, 1.25, "log")}
@@ -46,17 +46,6 @@ def test_a_network_that_was_kept_gives_the_same_posterior(kept, bank, monkeypatc
     assert other.estimate.header == fit.estimate.header
 
 
-def test_a_network_of_another_bank_or_film_is_refused(kept, bank, tmp_path):
-    _, path = kept
-    before = path.read_bytes()
-    with pytest.raises(cc.InputError, match="another microscope"):
-        cc.infer.fit(cell(), bank, method="npe", network=path, **UNIT, error=0.1)
-    other = make_bank(100, tmp_path / "other.h5")
-    with pytest.raises(cc.InputError, match="another bank"):
-        cc.infer.fit(cell(), other, method="npe", network=path, **UNIT)
-    assert path.read_bytes() == before
-
-
 def test_a_network_is_kept_once(kept, tmp_path):
     fit, path = kept
     saved = cc.infer.save_network(fit, tmp_path / "mine.npz")
@@ -65,35 +54,16 @@ def test_a_network_is_kept_once(kept, tmp_path):
         cc.infer.save_network(fit, saved)
 
 
-class Trap:
-    """Says so if it is unpickled."""
-
-    def __reduce__(self):
-        return (pytest.fail, ("it was unpickled",))
-
-
-@pytest.mark.parametrize("how", ["pickle", "pickle within", "cut", "empty", "text", "weights"])
-def test_a_file_that_is_no_network_is_refused_and_nothing_in_it_is_run(how, kept, bank, tmp_path):
+def test_a_network_whose_weights_do_not_fit_is_refused(kept, bank, tmp_path):
     _, path = kept
+    with np.load(path) as file:
+        arrays = {name: file[name] for name in file.files}
+    first = next(name for name in arrays if name.startswith("w:"))
+    arrays[first] = np.zeros(7, np.float32)
     wrong = tmp_path / "network.npz"
-    whole = path.read_bytes()
-    if how == "pickle":
-        with wrong.open("wb") as file:
-            np.save(file, np.array([Trap()], object), allow_pickle=True)
-    elif how == "pickle within":
-        with wrong.open("wb") as file:
-            np.savez(file, header=np.array([Trap()], object))
-    elif how == "weights":
-        with np.load(path) as file:
-            arrays = {name: file[name] for name in file.files}
-        first = next(name for name in arrays if name.startswith("w:"))
-        arrays[first] = np.zeros(7, np.float32)
-        with wrong.open("wb") as file:
-            np.savez(file, **arrays)
-    else:
-        wrong.write_bytes({"cut": whole[:-1000], "empty": b"", "text": b"no network"}[how])
+    with wrong.open("wb") as file:
+        np.savez(file, **arrays)
     before = wrong.read_bytes()
-    with pytest.raises(cc.StorageError, match=r"no network|damaged") as raised:
+    with pytest.raises(cc.StorageError, match="damaged"):
         cc.infer.fit(cell(), bank, method="npe", network=wrong, **UNIT)
-    assert "\n" not in str(raised.value)
     assert wrong.read_bytes() == before

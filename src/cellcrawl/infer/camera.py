@@ -12,6 +12,28 @@ _PER_PIXEL: Final = 2.0  # points of the edge
 _FEWEST, _MOST = 64, 1024
 _TOGETHER: Final = 8
 _SEAM: Final = 16  # points within which an outline surely has a corner
+_ROUNDS: Final = 2
+LEAST_ERROR: Final = 1e-5
+"""Of the position in each frame along each axis, in R_0; ten times the rounding in a bank."""
+LEAST_WAVE: Final = 1e-4
+"""Of the real and imaginary part of each wave of the outline, likewise."""
+
+
+def least(
+    path: np.ndarray, modes: np.ndarray | None, random: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray | None]:
+    """Return films in R_0 with the errors that the best of microscopes has.
+
+    Films of a bank are rounded and a run is not: without these errors, which cover the rounding, a
+    cell that glides steadily would look otherwise as a run than it does in the bank.
+    """
+    path = path + LEAST_ERROR * _normal(path.shape, random)
+    return path, None if modes is None else modes + LEAST_WAVE * _normal(modes.shape, random)
+
+
+def _normal(shape: tuple[int, ...], random: np.random.Generator) -> np.ndarray:
+    parts = random.standard_normal((*shape, 2))
+    return np.asarray(parts[..., 0] + 1j * parts[..., 1])
 
 
 def seen(
@@ -64,13 +86,27 @@ def _in_pixels(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the films of what a camera shows, with at least a point a pixel of the edge."""
     origin = path[..., None]
-    at = (films.edge_of_modes(modes, points) + origin) / pixel + aside
+    at = (_with_corners(modes, points) + origin) / pixel + aside
     shape = at.shape
     traced = _traced(at.reshape(-1, points)).reshape(shape)
     edge = (traced - aside) * pixel - origin
     centre = _centroid(edge)
     even = films.equal_arclength(films.evenly(edge - centre[..., None], points))
     return path + centre, films.modes_of_edge(even.real, even.imag)
+
+
+def _with_corners(modes: np.ndarray, points: int) -> np.ndarray:
+    """Return the outlines of modes with the corners that too few waves have rounded.
+
+    The waves that a bank keeps are those of points evenly spaced. Without the waves beyond, they
+    are not evenly spaced: spaced anew, they show such waves again, to which those kept belong.
+    """
+    edge = films.edge_of_modes(modes, points)
+    for _ in range(_ROUNDS):
+        spectrum = np.fft.fft(films.evenly(edge, points), axis=-1)
+        spectrum[..., films.WAVES] = points * modes
+        edge = np.fft.ifft(spectrum, axis=-1)
+    return np.asarray(edge)
 
 
 def _traced(at: np.ndarray) -> np.ndarray:

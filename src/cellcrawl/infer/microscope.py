@@ -215,6 +215,7 @@ def _seen(
         unit = None
     if unit is None:
         unit = np.full(rows.size, _middle(microscope.length_unit))
+    path, modes = camera.least(path, modes, random)
     path, modes = camera.seen(path, modes, microscope.pixel / unit, microscope.error / unit, random)
     scale = unit / microscope.usual_length
     path = path * scale[:, None]

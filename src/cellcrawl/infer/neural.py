@@ -152,27 +152,9 @@ def load_estimate(path: Path, taught: Trained) -> Estimate:
     StorageError
         If the file is no network, or damaged.
     """
+    wanted = _header(taught, taught.view.part.shape[1], taught.view.summaries.shape[1])
+    header, arrays = _read(path, wanted)  # a file that is refused is so without sbi
     torch = _torch()
-    try:
-        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            header = json.loads(bytes(file["header"]))
-            arrays = {name: file[name] for name in file.files if name != "header"}
-            if not isinstance(header, dict):
-                raise TypeError
-    except FileNotFoundError:
-        raise InputError(f"there is no network {path}") from None
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, zipfile.BadZipFile, EOFError):
-        raise StorageError(
-            f"{path} is no network of cellcrawl, or damaged: train it anew; nothing in it was run"
-        ) from None
-    view = taught.view
-    wanted = _header(taught, view.part.shape[1], view.summaries.shape[1])
-    for name, told in wanted.items():
-        if not _same(header.get(name), told):
-            raise InputError(
-                f"{path} is a network of another {name}: give another file, where one is trained "
-                "and kept; it is not overwritten"
-            )
     from sbi.neural_nets import posterior_nn
 
     random = torch.Generator().manual_seed(0)
@@ -189,6 +171,29 @@ def load_estimate(path: Path, taught: Trained) -> Estimate:
         raise StorageError(f"{path} is damaged: its weights do not fit; train it anew") from None
     network.eval()
     return Estimate(network, scaling, header)
+
+
+def _read(path: Path, wanted: dict[str, Any]) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+    """Return what a file of a network says of itself, if it says what is wanted, and its arrays."""
+    try:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+            header = json.loads(bytes(file["header"]))
+            arrays = {name: file[name] for name in file.files if name != "header"}
+            if not isinstance(header, dict):
+                raise TypeError
+    except FileNotFoundError:
+        raise InputError(f"there is no network {path}") from None
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, zipfile.BadZipFile, EOFError):
+        raise StorageError(
+            f"{path} is no network of cellcrawl, or damaged: train it anew; nothing in it was run"
+        ) from None
+    for name, told in wanted.items():
+        if not _same(header.get(name), told):
+            raise InputError(
+                f"{path} is a network of another {name}: give another file, where one is trained "
+                "and kept; it is not overwritten"
+            )
+    return header, arrays
 
 
 def _same(given: Any, wanted: Any) -> bool:

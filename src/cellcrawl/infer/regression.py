@@ -9,9 +9,9 @@ import numpy as np
 
 from cellcrawl.threads import on_one_thread
 
-_HIDDEN: Final = (128, 64)
+_HIDDEN: Final = (256, 128)
 _BATCH: Final = 256
-_RATE: Final = 2e-3
+_RATE: Final = 3e-3
 _DECAY: Final = 1e-3
 _CLIP: Final = 5.0  # in spreads: a summary beyond says no more than that it is beyond
 _FEWEST_STEPS, _MOST_STEPS = 400, 6000

@@ -15,7 +15,7 @@ import numpy as np
 from cellcrawl.infer import films
 from cellcrawl.infer.correlations import TINY, correlation, lags, ratio, together
 
-VERSION: Final = 2
+VERSION: Final = 3
 FEWEST_FRAMES: Final = 16
 """Fewer frames than this show no turn and no beat."""
 _NODES: Final = 32
