@@ -73,9 +73,8 @@ def long_runs() -> str:
         )
         text += (
             f"\nA zigzagging cell, (26, 600), for long (`benchmarks/invariants.py`): {ended}. "
-            "None of them drifts. `paper` and `spline` stop where they do for their cost: to "
-            "t = 10000 they would take half an hour and an hour of this busy machine. The "
-            "period of `paper` is that of its finite grid and step; dashed, the exact one.\n\n"
+            "None of them drifts. `paper` and `spline` on coarse grids, or they would take hours: "
+            "their periods are those of their grids and steps; dashed, the exact one.\n\n"
             "![Area against the tension law, mean length and period of the tension over a long run]"
             "(images/performance/invariants.png)\n"
         )
