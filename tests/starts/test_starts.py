@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 import cellcrawl as cc
@@ -93,7 +93,9 @@ def test_start_does_not_depend_on_the_number_of_nodes():
     np.testing.assert_allclose(fine.curve.theta[::2], coarse.curve.theta, atol=1e-10)
 
 
-@settings(max_examples=25)
+@settings(  # many cells have no resting circle, or none that a mode of this size leaves convex
+    max_examples=25, suppress_health_check=[HealthCheck.filter_too_much]
+)
 @given(
     parameters,
     st.integers(0, 20),
