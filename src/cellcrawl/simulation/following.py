@@ -19,7 +19,7 @@ from cellcrawl.solvers import Breakdown, Frame, Instant, Solver
 
 Kept = TypeVar("Kept")
 _CHECK_EVERY = 0.1  # longest time between two looks for a self-crossing
-_CHECKS_PER_CHECKPOINT = 50  # a crossing is traced back from the last checkpoint
+_CHECKS_PER_CHECKPOINT = 10  # a crossing is traced back from the last checkpoint
 _SAME_TIME = 1e-9  # relative
 _MOST_RECORDS = 1e7
 
@@ -117,7 +117,7 @@ class Follower(Generic[Kept]):
         records, to_frame = self.records, self.recorder.edges
         jump = self.law.next_look(max(now, 0.0))
         before_end, after_end = t_end * (1.0 - _SAME_TIME), t_end * (1.0 + _SAME_TIME)
-        while len(targets) < _CHECKS_PER_CHECKPOINT:
+        while len(targets) < self.solver.TIMES_AT_ONCE:
             if now >= jump:
                 jump = self.law.next_look(now)
             record = records * self.save_every

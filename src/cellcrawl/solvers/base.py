@@ -95,6 +95,9 @@ class Solver(ABC):
     OPTIONS: ClassVar[dict[str, str]]
     """Names of the scheme's options with a line on each, for help and error messages."""
 
+    TIMES_AT_ONCE: ClassVar[int] = 1
+    """How many times to give `instants`: between two calls a run looks whether it is to stop."""
+
     time: float
     """Time of the solver's current state: the end of its last step."""
 

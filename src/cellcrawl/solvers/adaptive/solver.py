@@ -53,6 +53,7 @@ class AdaptiveSolver(Solver):
     """
 
     name: ClassVar[str] = "adaptive"
+    TIMES_AT_ONCE: ClassVar[int] = 50
     OPTIONS: ClassVar[dict[str, str]] = {
         "nodes": "nodes in the output, 16 to 100000 (default 256)",
         "rtol": "relative tolerance, 1e-10 to 1e-2 (default 1e-4)",
