@@ -131,3 +131,11 @@ def test_a_wait_for_the_compiler_is_told_once(capsys, monkeypatch):
     assert "compiling the solver for this machine" in capsys.readouterr().err
     numba.njit(lambda x: x + 1)(1)
     assert "compiling" not in capsys.readouterr().err
+
+
+def test_what_is_compiled_beside_is_what_a_run_calls():
+    from cellcrawl.solvers.adaptive.ahead import LONGEST
+
+    cc.simulate(cc.Parameters(r_on=26, zeta_1=600), t_end=0.2)
+    for kernel, arguments in LONGEST.items():
+        assert arguments in kernel.signatures

@@ -105,8 +105,8 @@ def simulate(
     """
     import cellcrawl as cc
     from cellcrawl.command_line.compiling import announce_compilation
-
-    announce_compilation()
+    from cellcrawl.simulation.description import DEFAULT_SOLVER
+    from cellcrawl.solvers.adaptive import AdaptiveSolver, ahead
 
     given = read_configuration(config) if config is not None else Configuration({}, {}, None, None)
     chosen = {name: value for name, value in parameters.items() if value is not None}
@@ -120,6 +120,8 @@ def simulate(
         "dt": dt,
     }
     settings = {**given.run, **{name: value for name, value in flags.items() if value is not None}}
+    adaptive = settings.get("solver", DEFAULT_SOLVER) == AdaptiveSolver.name
+    announce_compilation(ahead.__name__ if adaptive else None)
     start = given.start
     if seed is not None:
         if start is not None and not isinstance(start, cc.RandomPerturbation):

@@ -79,8 +79,11 @@ def _temporary_folder() -> Path | None:
     return folder if folder.is_dir() and not folder.is_symlink() else None
 
 
+KEPT: Final = _keeps_kernels()
+"""Whether what was compiled stays on the disk for other processes and the next start."""
+
 _CACHED: Final[dict[str, Any]] = {
-    "cache": _keeps_kernels(),
+    "cache": KEPT,
     "error_model": "numpy",
     "no_cfunc_wrapper": True,  # nothing calls a kernel through a C function pointer
     "forceinline": False,  # said, or it is taken over from the inlined function that calls first
