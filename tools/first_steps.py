@@ -11,6 +11,7 @@ there at the end. The clock counts what else the machine does: the processor's s
 from __future__ import annotations
 
 import argparse
+import os
 import re
 import resource
 import shutil
@@ -34,6 +35,7 @@ def main() -> None:
     parser.add_argument("pages", nargs="*", default=["README", *PAGES], metavar="PAGE")
     parser.add_argument("--python", default=sys.executable, help="the interpreter of the reader")
     asked = parser.parse_args()
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # readers keep what Python compiled
     with tempfile.TemporaryDirectory(prefix="a reader ") as folder:
         place = Path(folder)
         (place / "bin").mkdir()
