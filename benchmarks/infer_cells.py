@@ -18,6 +18,7 @@ from cellcrawl.infer.trained import Calibration
 
 TIME = (0.625, 1.6, "log")  # of 1/k_off0: as wide as the paper's prior, in its own unit
 LENGTH = 37.0  # of a film
+SAVE_EVERY = 0.1  # finer than a bank's: a film owes nothing to the bank's records
 _FIELDS = ["x", "y", "centroid_x", "centroid_y"]
 
 
@@ -81,7 +82,7 @@ class Fresh:
         if spare < 0.0:
             return None
         at = films.TRANSIENT + self.begin * spare + np.linspace(0.0, needed, camera.frames)
-        film = self.run.interp(time=at, kwargs={"fill_value": "extrapolate"})
+        film = self.run.interp(time=at, method="cubic", kwargs={"fill_value": "extrapolate"})
         film = film.assign_coords(time=1e3 + camera.frame * np.arange(camera.frames))
         if camera.pixel > 0.0:
             seen = cc.observe(
@@ -102,8 +103,8 @@ def run_of(bank: Any, point: np.ndarray, seed: int, **world: Any) -> xr.Dataset 
     options = {} if "solver" in world else {"rtol": 1e-3}
     try:
         run = cc.simulate(
-            cc.Parameters(**named), float(bank.header["t_end"]), save_every=films.SAVE_EVERY,
-            nodes=96, start=cc.RandomPerturbation(seed=seed), **options, **world,
+            cc.Parameters(**named), float(bank.header["t_end"]), save_every=SAVE_EVERY, nodes=64,
+            start=cc.RandomPerturbation(seed=seed), **options, **world,
         )  # fmt: skip
     except cc.InputError:
         return None

@@ -121,3 +121,20 @@ def test_looks_count_every_run(bank):
     one = film()
     short = Films(1.0, one.path[:, :24], one.modes[:, :24])
     assert [t.name for t in summaries_of(short, microscope)[0]] == [t.name for t in view.told]
+
+
+def test_between_records_a_film_goes_along_cubics_and_reads_none_after_its_last():
+    from cellcrawl.infer import microscope
+
+    random = np.random.default_rng(5)
+    powers = random.standard_normal((3, 4, 2))  # of t, for three films of two waves
+    t = films.SAVE_EVERY * np.arange(30)
+    records = np.einsum("fpw,tp->ftw", powers, t[:, None] ** np.arange(4))
+    last = np.array([29, 12, 3])
+    for film, end in zip(records, last, strict=True):
+        film[end + 1 :] = np.nan
+    at = random.random((3, 20)) * last[:, None] * films.SAVE_EVERY
+    at[:, :2] = np.array([0.0, 1.0]) * (last * films.SAVE_EVERY)[:, None]
+    seen = microscope._at(records, at, last)
+    true = np.einsum("fpw,ftp->ftw", powers, at[..., None] ** np.arange(4))
+    np.testing.assert_allclose(seen, true, rtol=1e-10, atol=1e-9)

@@ -14,6 +14,7 @@ from cellcrawl.infer.prior import LENGTH_UNIT, TIME_UNIT, Prior, Range
 from cellcrawl.infer.summaries import Films, Summary, summaries
 
 _WHOLE: Final = ("completed", "resting")
+_CUBIC: Final = 3  # intervals between the records that a cubic takes
 _STAYING: Final = 0.25  # lengths that a resting cell stays within
 _CREEPING: Final = 0.01  # lengths per usual time: what goes less far has not moved
 
@@ -189,9 +190,10 @@ def _seen(
     outcome = bank.outcomes[block.runs]
     # A run that ended by itself has its last record between two times of the grid.
     early = ~np.isin(outcome, _WHOLE)
-    there = np.maximum(block.records - 1 - early, 0) * films.SAVE_EVERY
+    last = np.maximum(block.records - 1 - early, 0)
+    there = last * films.SAVE_EVERY
     failed = (outcome == "failed") | (outcome == "killed")
-    short = (needed > there + 1e-9) & ~failed
+    short = (np.maximum(needed, _CUBIC * films.SAVE_EVERY) > there + 1e-9) & ~failed
     rows = np.flatnonzero(~short & ~failed)
     ended = {"seen": 0, "resting": 0, "failed": int(failed.sum())}
     for name in np.unique(outcome[short]):
@@ -201,8 +203,8 @@ def _seen(
         return None, rows, part[rows], np.empty(0), ended
     begin = random.random(count)[rows] * (there - needed)[rows]
     at = begin[:, None] + np.arange(microscope.frames) * (microscope.frame / time[rows])[:, None]
-    path = _at(block.centroid[rows], at)
-    modes = _at(block.modes[rows], at) if microscope.outlines else None
+    path = _at(block.centroid[rows], at, last[rows])
+    modes = _at(block.modes[rows], at, last[rows]) if microscope.outlines else None
     if modes is None:
         unit = draws[LENGTH_UNIT][rows] if LENGTH_UNIT in draws else None
     elif LENGTH_UNIT in draws:
@@ -240,15 +242,25 @@ def rests(path: np.ndarray, microscope: Microscope) -> np.ndarray:
     return np.asarray(away < min(_STAYING, least))
 
 
-def _at(values: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Interpolate films between records: of each row at its own times, shape (row, frame, ...)."""
+def _at(values: np.ndarray, at: np.ndarray, last: np.ndarray) -> np.ndarray:
+    """Interpolate films between records: of each row at its own times, shape (row, frame, ...).
+
+    By cubics through the four records around, none after a row's ``last``. Straight lines would
+    have a bend at each record, and a network would read the time unit off the bends.
+    """
     place = at / films.SAVE_EVERY
-    before = np.clip(np.floor(place + 1e-9).astype(int), 0, values.shape[1] - 2)
-    part = np.clip(place - before, 0.0, 1.0)
+    first = np.clip(np.floor(place).astype(int) - 1, 0, last[:, None] - _CUBIC)
+    x = place - first
+    weights = (
+        -(x - 1.0) * (x - 2.0) * (x - 3.0) / 6.0,
+        x * (x - 2.0) * (x - 3.0) / 2.0,
+        -x * (x - 1.0) * (x - 3.0) / 2.0,
+        x * (x - 1.0) * (x - 2.0) / 6.0,
+    )
     row = np.arange(len(values))[:, None]
-    if values.ndim == 3:
-        part = part[..., None]
-    return np.asarray((1.0 - part) * values[row, before] + part * values[row, before + 1])
+    wave = (np.newaxis,) * (values.ndim - 2)
+    terms = (w[..., *wave] * values[row, first + i] for i, w in enumerate(weights))
+    return np.asarray(sum(terms))
 
 
 def _with_size(
