@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final, TypeVar, cast
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
 
 from cellcrawl.arguments import checked
 from cellcrawl.infer import films
@@ -29,12 +29,15 @@ from cellcrawl.plot.style import (
     PaperFigure,
     house_style,
 )
+from cellcrawl.plot.symbols import PARAMETER_SYMBOLS
 from cellcrawl.simulation import simulate
 from cellcrawl.starts import RandomPerturbation
 from cellcrawl.validation import whole_number
 
 _OUTLINES: Final = 8
 _BINS: Final = 24
+_PANEL: Final = 1.9  # inches a parameter
+_WIDE: Final = 3.0  # highest over lowest: an axis below is as good as straight
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -104,8 +107,7 @@ def margin_picture(fit: Fit, name: str, truth: float | None = None) -> Figure:
     if range_.scale == "log":
         axis.set_xscale("log")
         _few_ticks(axis.xaxis)
-    unit = unit_of(name)
-    axis.set_xlabel(f"{name} ({unit})" if unit else name)
+    axis.set_xlabel(_label(fit, name))
     axis.set_yticks([])
     axis.set_ylabel("times the prior")
     return figure
@@ -113,55 +115,78 @@ def margin_picture(fit: Fit, name: str, truth: float | None = None) -> Figure:
 
 @checked
 @_in_house
-def corner(fit: Fit) -> Figure:
-    """Draw the posterior of every pair of parameters.
+def corner(fit: Fit, truth: Mapping[str, float] | None = None) -> Figure:
+    """Draw the posterior of every parameter and every pair, as wide as it is within its prior.
 
     Parameters
     ----------
     fit : Fit
+    truth : mapping of str to float, optional
+        Values to mark, where they are known.
 
     Returns
     -------
     Figure
     """
-    count = len(fit.names)
-    figure, axes = _new(count, count, PAGE, 0.95 * PAGE)
+    names = fit.names
+    width = min(PAGE, _PANEL * len(names))
+    figure, axes = _new(len(names), len(names), width, 0.95 * width)
     values, weight = fit.values, fit.samples.weight
-    ranges = fit.trained.view.ranges
-    grid = [r.value(np.linspace(0.0, 1.0, _BINS + 1)) for r in ranges]
-    for row in range(count):
-        for column in range(count):
-            axis: Any = axes[row, column]
-            if column > row:
-                axis.set_axis_off()
-                continue
-            if column == row:
-                axis.hist(values[:, row], grid[row], weights=weight, color=TRACK, alpha=0.75)
-                axis.set_yticks([])
-            else:
-                axis.hist2d(
-                    values[:, column],
-                    values[:, row],
-                    (grid[column], grid[row]),
-                    weights=weight,
-                    cmap="Purples",
-                )
-                if ranges[row].scale == "log":
-                    axis.set_yscale("log")
-                    _few_ticks(axis.yaxis)
-            if ranges[column].scale == "log":
-                axis.set_xscale("log")
-                _few_ticks(axis.xaxis)
-                axis.tick_params(axis="x", rotation=45)
-            if row == count - 1:
-                axis.set_xlabel(fit.names[column])
-            else:
-                axis.tick_params(labelbottom=False, which="both")
-            if column == 0 and row > 0:
-                axis.set_ylabel(fit.names[row])
-            elif column < row:
-                axis.tick_params(labelleft=False, which="both")
+    grids = [_grid(fit, name) for name in names]
+    known = [(truth or {}).get(name) for name in names]
+    for row, column in np.ndindex(axes.shape):
+        axis: Any = axes[row, column]
+        if column > row:
+            axis.set_axis_off()
+            continue
+        if column == row:
+            axis.hist(values[:, row], grids[row], weights=weight, color=TRACK, alpha=0.75)
+            axis.set_yticks([])
+        else:
+            pair = values[:, column], values[:, row]
+            bins = grids[column], grids[row]
+            axis.hist2d(*pair, bins, weights=weight, cmap="Purples")
+            _scale(axis.yaxis, axis.set_yscale, grids[row])
+            if known[row] is not None:
+                axis.axhline(known[row], color=INK, lw=0.6, ls="--")
+        axis.set_xlim(grids[column][0], grids[column][-1])
+        _scale(axis.xaxis, axis.set_xscale, grids[column])
+        axis.tick_params(axis="x", rotation=45)
+        if known[column] is not None:
+            axis.axvline(known[column], color=INK, lw=0.6, ls="--")
+        if row == len(names) - 1:
+            axis.set_xlabel(_label(fit, names[column]))
+        else:
+            axis.tick_params(labelbottom=False, which="both")
+        if column == 0 and row > 0:
+            axis.set_ylabel(_label(fit, names[row]))
+        elif column < row:
+            axis.tick_params(labelleft=False, which="both")
     return figure
+
+
+def _grid(fit: Fit, name: str) -> np.ndarray:
+    """Return the ends of bins that hold all but a thousandth of a posterior."""
+    range_ = fit.trained.view.ranges[fit.names.index(name)]
+    found = fit.interval(name, 0.999)
+    low, high = range_.part(np.array([found.low, found.high]))
+    aside = 0.15 * (high - low)
+    parts = np.linspace(max(low - aside, 0.0), min(high + aside, 1.0), _BINS + 1)
+    return np.asarray(range_.value(parts))
+
+
+def _scale(ticks: Any, set_scale: Callable[[str], None], grid: np.ndarray) -> None:
+    """Make an axis logarithmic if its bins are, over more than a small range."""
+    if grid[-1] / grid[0] > _WIDE and not np.allclose(np.diff(grid), grid[1] - grid[0]):
+        set_scale("log")
+        _few_ticks(ticks)
+    else:
+        ticks.set_major_locator(MaxNLocator(4))
+
+
+def _label(fit: Fit, name: str) -> str:
+    unit = "" if fit.cell.model_units else unit_of(name)
+    return PARAMETER_SYMBOLS.get(name, name) + (f" ({unit})" if unit else "")
 
 
 @checked
@@ -243,7 +268,7 @@ def calibration_picture(calibration: Calibration) -> Figure:
         recovered.plot(
             calibration.truth[:, place], calibration.mean[:, place], ".", ms=1.6, color=TRACK
         )
-        recovered.set_ylabel(name)
+        recovered.set_ylabel(PARAMETER_SYMBOLS.get(name, name))
         recovered.set_xlabel("true, part of the prior")
         recovered.set_title(f"R² = {calibration.recovered[place]:.2f}")
         cells = len(calibration.rank)
@@ -279,7 +304,7 @@ def comparison_picture(comparison: Comparison) -> Figure:
             axis.set_yscale("log")
             _few_ticks(axis.yaxis)
         axis.set_xticks([0, 1], ["control", "treated"])
-        axis.set_title(name)
+        axis.set_title(PARAMETER_SYMBOLS.get(name, name))
     return figure
 
 
