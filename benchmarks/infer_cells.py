@@ -18,7 +18,8 @@ from cellcrawl.infer.trained import Calibration
 
 TIME = (0.625, 1.6, "log")  # of 1/k_off0: as wide as the paper's prior, in its own unit
 LENGTH = 37.0  # of a film
-SAVE_EVERY = 0.1  # finer than a bank's: a film owes nothing to the bank's records
+SAVE_EVERY = 0.1  # and more nodes than a bank's: a film owes nothing to the bank's records
+NODES = 192
 _FIELDS = ["x", "y", "centroid_x", "centroid_y"]
 
 
@@ -103,14 +104,14 @@ def run_of(bank: Any, point: np.ndarray, seed: int, **world: Any) -> xr.Dataset 
     options = {} if "solver" in world else {"rtol": 1e-3}
     try:
         run = cc.simulate(
-            cc.Parameters(**named), float(bank.header["t_end"]), save_every=SAVE_EVERY, nodes=64,
+            cc.Parameters(**named), float(bank.header["t_end"]), save_every=SAVE_EVERY, nodes=NODES,
             start=cc.RandomPerturbation(seed=seed), **options, **world,
         )  # fmt: skip
     except cc.InputError:
         return None
     if run.attrs["status"] != "completed":  # the closing record is off the grid
         run = run.isel(time=slice(None, -1))
-    return run[_FIELDS].load() if run.sizes["time"] > 1 else None
+    return run[_FIELDS].astype(np.float32).load() if run.sizes["time"] > 1 else None
 
 
 def fresh(bank: Any, count: int, seed: int, camera: Camera, **world: Any) -> list[Fresh]:

@@ -169,7 +169,7 @@ def test_outlines_in_some_frames_only_are_refused(here, capsys):
 @pytest.mark.parametrize("name", ["schema", "kind"])
 def test_a_bank_of_another_version_is_refused(name, here, capsys):
     with h5py.File("bank.h5", "r+") as file:
-        text = file.attrs["header"].replace('"schema": 1', '"schema": 0')
+        text = file.attrs["header"].replace(f'"schema": {bank_file.SCHEMA}', '"schema": 0')
         text = text if name == "schema" else text.replace(bank_file.KIND, "other")
         file.attrs["header"], file.attrs["seal"] = text, bank_file._hash(text)
     before = (here / "bank.h5").read_bytes()

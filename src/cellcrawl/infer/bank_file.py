@@ -28,7 +28,7 @@ from cellcrawl.sweeps.identity import code_version
 from cellcrawl.sweeps.parts import NOT_RUN
 from cellcrawl.sweeps.store import SweepStore
 
-SCHEMA: Final = 1
+SCHEMA: Final = 2
 KIND: Final = "cellcrawl bank"
 ASKED: Final = {
     "prior": "prior of the cell",

@@ -17,7 +17,8 @@ MODES: Final = 10
 WAVES: Final = np.arange(-MODES, MODES + 1)
 TRANSIENT: Final = 10.0
 """Time that films leave out, in 1/k_off0: a cell at rest breaks its symmetry meanwhile."""
-SAVE_EVERY: Final = 0.25
+SAVE_EVERY: Final = 0.125
+"""Time between records, in 1/k_off0: between them an edge goes along cubics, to 1e-5 of R_0."""
 NODES: Final = 64
 QUANTUM: Final = 1e-4
 """Step in which modes are kept, in R_0: a thousandth of a usual pixel."""
