@@ -31,6 +31,7 @@ copybutton_prompt_is_regexp = True
 html_theme = "furo"
 html_title = "cellcrawl"
 html_static_path = ["_static"]
+html_favicon = "_static/favicon.svg"
 html_css_files = ["site.css"]
 html_js_files = ["enlarge.js"]
 html_search_scorer = str(Path(__file__).with_name("scorer.js"))

@@ -5,13 +5,11 @@
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).parents[1]
+from performance_page import ROOT, load, table
+
 PAGE = ROOT / "docs" / "explore.md"
-RESULTS = ROOT / "benchmarks" / "results" / "explorer.json"
 BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
 
 
@@ -52,9 +50,7 @@ def figures(found: dict[str, Any]) -> str:
         f"{found['version'].replace('Chrome/', 'Chromium ').split('.')[0]}, {found['cores']} "
         f"cores, load {found['load']:.1f} (`benchmarks/explorer.py`):",
         "",
-        "| what | asked | measured |",
-        "|---|---|---|",
-        *(f"| {what} | {asked} | {measured} |" for what, asked, measured in rows),
+        table(["what", "asked", "measured"], [list(row) for row in rows]).rstrip(),
     ]
     return "\n".join(lines)
 
@@ -68,7 +64,7 @@ def main() -> None:
     text = PAGE.read_text("utf-8")
     before, rest = text.split(BEGIN)
     _, after = rest.split(END)
-    made = figures(json.loads(RESULTS.read_text("utf-8")))
+    made = figures(load("explorer"))
     PAGE.write_text(f"{before}{BEGIN}\n\n{made}\n\n{END}{after}", "utf-8")
 
 

@@ -216,6 +216,25 @@ def startup() -> str:
     )
 
 
+def laws() -> str:
+    """Return what other laws and surroundings cost, and how long a new law compiles."""
+    content = load("laws")
+    rows = [
+        [c["case"], f"{c['milliseconds']:.0f}", f"{c['ratio']:.2f}", f"{c['steps']:,}"]
+        for c in content["cases"]
+    ]
+    starts = [[what, f"{seconds:.1f}"] for what, seconds in content["compile"].items()]
+    return (
+        "\n## Laws and surroundings\n\n`python benchmarks/laws.py --compile`: the cell (26, 600) "
+        f"to t = {content['t_end']:g}, saved every 0.1, in turns. What takes more steps is another "
+        "motion: swept myosin drives the cell faster, and on stripes it lies stretched between "
+        "two, with sharp ends.\n\n"
+        + table(["law or surroundings", "time (ms)", "over the paper's law", "steps"], rows)
+        + "\nA whole start to t = 1, of a law that is new to the machine:\n\n"
+        + table(["what", "time (s)"], starts)
+    )
+
+
 def _range(values: list[float]) -> str:
     if not values:
         return "never"
@@ -235,6 +254,7 @@ def main() -> None:
         scaling(),
         storage(),
         startup(),
+        laws(),
     )
     (ROOT / "docs" / "performance.md").write_text("".join(parts), "utf-8")
 
