@@ -16,7 +16,7 @@ ways = {
 }
 runs = {name: cc.simulate(cell, t_end=90, start=start, schedule=way) for name, way in ways.items()}
 figure = cc.plot.time_series(runs, quantities=("tension", "speed", "circularity"))
-figure.savefig("07_ramp.png", dpi=110)
+figure.savefig("07_ramp.png", dpi=160)
 
 for name, run in runs.items():
     late = run.sel(time=slice(60, None))

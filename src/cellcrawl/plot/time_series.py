@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from cellcrawl import observables
 from cellcrawl.arguments import checked
@@ -66,7 +67,10 @@ def time_series(
         given = several_axes(axes, len(quantities), "one for each quantity")
         _draw_all(given, runs, quantities)
         return figure_of(given[0])
-    with paper_figure(COLUMN, 0.35 + 0.85 * len(quantities), shown=True) as figure:
+    # Ticks are chosen anew once axes have their place: room for a number below the last.
+    layout = ConstrainedLayoutEngine(rect=(0.0, 0.0, 0.98, 1.0))
+    height = 0.35 + 0.85 * len(quantities)
+    with paper_figure(COLUMN, height, layout=layout, shown=True) as figure:
         panels = figure.subplots(len(quantities), 1, sharex=True, squeeze=False).ravel().tolist()
         _draw_all(panels, runs, quantities)
         figure.align_ylabels(panels)
