@@ -98,6 +98,17 @@ def test_a_cell_of_another_kind_raises_the_alarm(bank, found):
     assert fit.strange
 
 
+def test_who_forgets_the_error_of_positions_is_told_so(bank, found):
+    steady = cell()
+    shake = 0.05 * np.random.default_rng(8).standard_normal((2, steady.sizes["time"]))
+    shift = {"x": shake[0][:, None], "y": shake[1][:, None]}
+    shift |= {f"centroid_{axis}": shift[axis][:, 0] for axis in "xy"}
+    shaken = steady.assign({n: (steady[n].dims, steady[n].values + s) for n, s in shift.items()})
+    fit = cc.infer.fit(shaken, bank, time_unit=(0.8, 1.25, "log"))
+    assert "give the error" in fit.summary()
+    assert "give the error" not in found.summary()
+
+
 def test_false_alarms_are_as_rare_as_they_should_be(found):
     taught = found.trained
     rows = taught.aside

@@ -55,7 +55,7 @@ def bank(
 ) -> int:
     """Make a bank of runs for `cellcrawl fit`: one file, made once, shared by many.
 
-    10,000 runs take some 13 minutes of two idle cores and 100 MB. After Ctrl-C the same command
+    10,000 runs take some 19 minutes of two cores and 200 MB. After Ctrl-C the same command
     goes on.
 
     \b

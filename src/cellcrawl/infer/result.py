@@ -22,6 +22,7 @@ _EDGE: Final = 0.03  # of a range: a posterior with much of itself there wants a
 _PILED: Final = 0.25
 _ODD: Final = 5.0  # spreads that a single summary may be off
 _LISTED: Final = 8
+_SHAKING: Final = "velocity correlation at 1 frames"
 _APART: Final = 1.0  # standard deviations between two methods that are told
 
 
@@ -237,6 +238,11 @@ class Fit:
         if self.strange:
             odd = ", ".join(f"{one.name} ({one.spreads:+.0f} spreads)" for one in self.strange[:3])
             said.append(f"what the model does not make: {odd}")
+        if any(one.name == _SHAKING and one.spreads < 0.0 for one in self.strange):
+            said.append(
+                "the path goes to and fro from frame to frame, as one does whose position has an "
+                f"error: it is taken for {self.trained.microscope.error:g}; give the error"
+            )
         said += [f"this film does not fix {name}" for name in self.untold]
         said += [
             f"{name} piles up at an end of its prior: the cell may lie beyond it, in a wider bank"
