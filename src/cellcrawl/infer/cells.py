@@ -115,7 +115,10 @@ def cells_of(observed: Any, outlines: Any = None) -> list[Cell]:
     if isinstance(observed, Sequence) and not isinstance(observed, (str, bytes)):
         if not observed:
             raise InputError("there is no cell to fit: the list is empty")
-        return [cell for one in observed for cell in cells_of(one)]
+        cells = [cell for one in observed for cell in cells_of(one)]
+        if len(cells) > 1 and len({cell.name for cell in cells}) == 1:  # nobody named them
+            return [replace(cell, name=str(number)) for number, cell in enumerate(cells, 1)]
+        return cells
     raise InputError(
         "observed must be a run, or what observe, read_tracks or read_outlines returns, not "
         f"{shown(observed)}"

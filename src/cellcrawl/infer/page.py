@@ -27,6 +27,8 @@ _STYLE: Final = """
 body{margin:0 auto;padding:1.2rem 1rem 3rem;max-width:62rem;color:var(--ink);
 background:var(--paper);font:16px/1.5 system-ui,sans-serif;overflow-wrap:anywhere}
 h1{font-size:1.5rem;margin:.2rem 0}h2{font-size:1.15rem;margin:2rem 0 .4rem}
+h3{font-size:1rem;margin:1.2rem 0 .4rem}
+details{border-bottom:1px solid var(--line);padding:.4rem 0}summary{cursor:pointer}
 p.sub{color:var(--soft);margin:.2rem 0}
 .wide{overflow-x:auto}
 table{border-collapse:collapse;width:100%}
@@ -40,7 +42,7 @@ td.n,th.n{white-space:normal}
 td:first-child{min-width:5.6rem}.row img{width:100%}}
 img{max-width:100%;height:auto;background:#fff;border-radius:4px}
 .row{display:flex;flex-wrap:wrap;gap:.6rem}.row img{width:18rem}
-.corner{min-width:34rem;width:46rem}
+.alone{width:24rem}.corner{min-width:34rem;width:46rem}
 ul.told{padding-left:1.2rem}ul.told li{margin:.3rem 0}
 .alarm{border-left:4px solid var(--warn);padding:.4rem .8rem;color:var(--warn)}
 pre{white-space:pre-wrap;border:1px solid var(--line);padding:.6rem;border-radius:4px}
@@ -94,7 +96,13 @@ def report(
         parts.append(_of_comparison(comparison))
     if group is not None:
         parts.append(_of_group(group))
-    parts += [_of_fit(fit, len(cells) > 1) for fit in cells]
+    if len(cells) == 1:
+        parts += ["<h2>What the film says</h2>", _of_fit(cells[0])]
+        pairs = _image(pictures.corner(cells[0]), "pairs of parameters", "corner")
+        parts.append(f'<h2>Pairs of parameters</h2><div class="wide">{pairs}</div>')
+    else:
+        parts.append("<h2>Cell by cell</h2>")
+        parts += [_folded(fit, comparison) for fit in cells]
     parts.append(_of_method(cells[0], command))
     text = (
         '<!doctype html><html lang="en"><head><meta charset="utf-8">'
@@ -129,9 +137,20 @@ def _origin(fit: Fit) -> str:
     )
 
 
-def _of_fit(fit: Fit, several: bool) -> str:
-    name = f"Cell {fit.cell.name}" if several else "What the film says"
-    parts = [f"<h2>{_text(name)}</h2>"]
+def _folded(fit: Fit, comparison: Comparison | None) -> str:
+    """Return a line of one cell of several, which opens."""
+    name = f"Cell {fit.cell.name}"
+    if comparison is not None:
+        name += ", control" if fit in comparison.control.fits else ", treated"
+    found = [f"{row['name']} {row['value']:.3g}" for row in fit.table()]
+    told = "the model makes no such film" if fit.alarm else ", ".join(found)
+    return (
+        f"<details><summary><b>{_text(name)}</b>: {_text(told)}</summary>{_of_fit(fit)}</details>"
+    )
+
+
+def _of_fit(fit: Fit) -> str:
+    parts = []
     if fit.alarm:
         parts.append(
             '<p class="alarm">The model makes no such film: do not believe the intervals below '
@@ -148,18 +167,13 @@ def _of_fit(fit: Fit, several: bool) -> str:
     )
     if fit.caveats:
         items = "".join(f"<li>{_text(one[0].upper() + one[1:])}.</li>" for one in fit.caveats)
-        parts.append(f'<h2>What to know</h2><ul class="told">{items}</ul>')
+        parts.append(f'<h3>What to know</h3><ul class="told">{items}</ul>')
     made = [] if fit.alarm else pictures.foretold(fit)
     films = [("the cell", fit.cell), *((one.name, one) for one in made)]
-    parts.append("<h2>The film, and runs with such parameters</h2>")
-    shown_films = _image(pictures.cell_picture(films), "the film and runs", "corner")
+    parts.append("<h3>The film, and runs with such parameters</h3>")
+    size = "corner" if made else "alone"
+    shown_films = _image(pictures.cell_picture(films), "the film and runs", size)
     parts.append(f'<div class="wide">{shown_films}</div>')
-    if not several:
-        parts.append("<h2>Pairs of parameters</h2>")
-        parts.append(
-            f'<div class="wide">{_image(pictures.corner(fit), "pairs of parameters", "corner")}'
-            "</div>"
-        )
     return "\n".join(parts)
 
 

@@ -37,7 +37,7 @@ from cellcrawl.validation import whole_number
 _OUTLINES: Final = 8
 _BINS: Final = 24
 _PANEL: Final = 1.9  # inches a parameter
-_WIDE: Final = 3.0  # highest over lowest: an axis below is as good as straight
+_WIDE: Final = 6.0  # highest over lowest: an axis below is as good as straight
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -104,9 +104,7 @@ def margin_picture(fit: Fit, name: str, truth: float | None = None) -> Figure:
     if truth is not None:
         axis.axvline(truth, color="#1b7837", lw=1.2, ls=":")
     axis.set_xlim(edges[0], edges[-1])
-    if range_.scale == "log":
-        axis.set_xscale("log")
-        _few_ticks(axis.xaxis)
+    _scale(axis.xaxis, axis.set_xscale, edges)
     axis.set_xlabel(_label(fit, name))
     axis.set_yticks([])
     axis.set_ylabel("times the prior")
@@ -300,9 +298,8 @@ def comparison_picture(comparison: Comparison) -> Figure:
                 x = at + 0.6 * (i / max(len(group.fits) - 1, 1) - 0.5)
                 axis.plot([x, x], [found.low, found.high], color=colour, lw=0.6, alpha=0.6)
                 axis.plot(x, found.value, ".", ms=2.5, color=colour)
-        if range_.scale == "log":
-            axis.set_yscale("log")
-            _few_ticks(axis.yaxis)
+        if range_.scale == "log" and axis.get_ylim()[0] > 0.0:
+            _scale(axis.yaxis, axis.set_yscale, np.geomspace(*axis.get_ylim()))
         axis.set_xticks([0, 1], ["control", "treated"])
         axis.set_title(PARAMETER_SYMBOLS.get(name, name))
     return figure
