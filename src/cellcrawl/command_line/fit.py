@@ -11,9 +11,12 @@ from typing import Any
 import click
 
 from cellcrawl.command_line.bank import numbers
+from cellcrawl.command_line.main import complain
 from cellcrawl.command_line.options import say
 from cellcrawl.command_line.track_files import read_tracks_of, reading_options
 from cellcrawl.errors import InputError
+
+_QUICK = 500  # runs that are learned from without a word
 
 
 @click.command()
@@ -107,6 +110,8 @@ def fit(
         raise InputError("--treated-outlines go with --treated")
     cells = _cells(file, outlines, track, reading)
     others = [] if treated is None else _cells(treated, treated_outlines, None, reading)
+    if len(bank) > _QUICK:
+        complain(f"learning from {len(bank):,} runs, filmed as these cells were: some minutes")
     fits = infer.fit_all(
         [*cells, *others],
         bank,
