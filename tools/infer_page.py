@@ -81,8 +81,15 @@ def _cameras(found: dict[str, Any]) -> list[str]:
         alarms = camera["false alarms"]
         told = [_bold(f"{v:.3f}", v <= 0.01) for v in p]
         said.append(_row(name, [*told, _bold(f"{alarms:.1%}", alarms > 0.05)]))
-    cells = "; ".join(f"{name}: {one['cells']}" for name, one in found.items())
-    return [*said, "", f"Fresh cells: {cells}."]
+    counts = sorted({one["cells"] for one in found.values()})
+    unsure = 100.0 * (0.9 * 0.1 / counts[0]) ** 0.5
+    cells = " or ".join(f"{count:,}" for count in counts)
+    return [
+        *said,
+        "",
+        f"Each line is of {cells} fresh cells: a share of 90 % is known to {unsure:.1f} points, one "
+        "standard deviation.",
+    ]
 
 
 def _recovered(name: str, fresh: dict[str, Any], aims: tuple[float, ...] | None) -> str:
