@@ -87,8 +87,8 @@ def _cameras(found: dict[str, Any]) -> list[str]:
     return [
         *said,
         "",
-        f"Each line is of {cells} fresh cells: a share of 90 % is known to {unsure:.1f} points, one "
-        "standard deviation.",
+        f"Each line is of {cells} fresh cells: a share of 90 % is known to {unsure:.1f} points, "
+        "one standard deviation.",
     ]
 
 
