@@ -42,7 +42,9 @@ _PLACES: Final = (
     "surroundings/place.py",
 )
 _ADAPTIVE: Final = "solvers/adaptive"
-_NOT_KERNELS: Final = ("__init__.py", "follow.py", "linked.py", "solver.py", "state.py")
+_NOT_KERNELS: Final = {
+    *("__init__.py", "ahead.py", "follow.py", "linked.py", "solver.py", "state.py"),
+}
 _SKIPPED: Final = {
     *("COMMENT", "NL", "NEWLINE", "INDENT", "DEDENT", "ENCODING", "ENDMARKER", "STRING"),
     *("FSTRING_START", "FSTRING_END"),
