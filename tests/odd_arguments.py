@@ -120,7 +120,7 @@ def _fits(call: Callable[..., Call], folder: Path) -> Iterator[Call]:
                path=folder / "network.npz")  # fmt: skip
     yield call(infer.together, fits=fits)
     yield call(infer.compare, control=fits, treated=fits)
-    yield call(infer.corner, fit=fits[0])
+    yield call(infer.corner, fit=fits[0], truth={"r_on": 25.0})
     yield call(infer.foretold, fit=fits[0], count=1, seed=1)
     yield call(fits[0].interval, name="r_on", level=0.9)
     yield call(

@@ -32,7 +32,7 @@ from cellcrawl.plot.style import (
 from cellcrawl.plot.symbols import PARAMETER_SYMBOLS
 from cellcrawl.simulation import simulate
 from cellcrawl.starts import RandomPerturbation
-from cellcrawl.validation import whole_number
+from cellcrawl.validation import one_of, whole_number
 
 _OUTLINES: Final = 8
 _BINS: Final = 24
@@ -125,13 +125,19 @@ def corner(fit: Fit, truth: Mapping[str, float] | None = None) -> Figure:
     Returns
     -------
     Figure
+
+    Raises
+    ------
+    InputError
+        For a value that was not unknown.
     """
     names = fit.names
+    marks = {one_of("truth", name, names): value for name, value in (truth or {}).items()}
     width = min(PAGE, _PANEL * len(names))
     figure, axes = _new(len(names), len(names), width, 0.95 * width)
     values, weight = fit.values, fit.samples.weight
     grids = [_grid(fit, name) for name in names]
-    known = [(truth or {}).get(name) for name in names]
+    known = [marks.get(name) for name in names]
     for row, column in np.ndindex(axes.shape):
         axis: Any = axes[row, column]
         if column > row:
