@@ -220,7 +220,9 @@ def choice(at: Measuring) -> dict[str, Any]:
                 cell, [at.bank, other], time_unit=TIME, length_unit=1.0,
                 pixel=CAMERAS[name].pixel, error=CAMERAS[name].error,
             )  # fmt: skip
-            law = f"{type(other.law).__name__} {other.law.describe()['values']}, {len(other)} runs"
+            ranges = other.prior.ranges.items()
+            own = [f"{n[5:]} {r.low:g} to {r.high:g}" for n, r in ranges if n.startswith("laws.")]
+            law = ", ".join([type(other.law).__name__, *own, f"{len(other):,} runs"])
             result[f"{law}: {name}"] = {
                 "error rate": round(found.error_rate, 4),
                 "confusion": np.round(found.confusion, 3).tolist(),
