@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import cellcrawl as cc
-from cellcrawl.infer import approximate
+from cellcrawl.infer import approximate, pictures
 from cellcrawl.infer.cells import cells_of
 from cellcrawl.infer.regression import train
 from cellcrawl.infer.trained import Calibration, _even
@@ -107,6 +107,20 @@ def test_who_forgets_the_error_of_positions_is_told_so(bank, found):
     fit = cc.infer.fit(shaken, bank, time_unit=(0.8, 1.25, "log"))
     assert "give the error" in fit.summary()
     assert "give the error" not in found.summary()
+
+
+@pytest.mark.parametrize(
+    ("grid", "scale"),
+    [
+        (np.linspace(0.0, 1.0, 25), "linear"),  # a law's number may begin at none
+        (np.geomspace(1e-9, 1e-8, 25), "log"),
+        (np.geomspace(5e-4, 1e-3, 25), "linear"),
+    ],
+)
+def test_axes_of_a_posterior_are_logarithmic_where_its_range_is_wide(grid, scale):
+    _, axes = pictures._new(1, 1, 2.0, 2.0)
+    pictures._scale(axes[0, 0].xaxis, axes[0, 0].set_xscale, grid)
+    assert axes[0, 0].get_xscale() == scale
 
 
 def test_false_alarms_are_as_rare_as_they_should_be(found):

@@ -181,7 +181,8 @@ def _grid(fit: Fit, name: str) -> np.ndarray:
 
 def _scale(ticks: Any, set_scale: Callable[[str], None], grid: np.ndarray) -> None:
     """Make an axis logarithmic if its bins are, over more than a small range."""
-    if grid[-1] / grid[0] > _WIDE and not np.allclose(np.diff(grid), grid[1] - grid[0]):
+    even = np.allclose(np.diff(grid), grid[1] - grid[0], atol=0.0)
+    if not even and grid[-1] > _WIDE * grid[0]:
         set_scale("log")
         _few_ticks(ticks)
     else:
