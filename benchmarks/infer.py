@@ -52,24 +52,30 @@ def main() -> None:
 
 
 def write(path: Path, bank: Any, part: str, found: dict[str, Any]) -> None:
-    """Put a part into the record, and take out parts of another bank."""
+    """Put a part into the record, and take out the parts if they are of another kind of bank.
+
+    A bank made anew on another processor differs in the last bits of its runs, and in its hash:
+    each part has that of its own.
+    """
     old = json.loads(path.read_text("utf-8")) if path.exists() else {}
-    kept = {
-        name: value
-        for name, value in old.items()
-        if name in PARTS and value.get("bank") == bank.digest
-    }
+    told = {**bank.header, "outcomes": dict(Counter(bank.outcomes.tolist()))}
+    same = _kind(old.get("bank", {})) == _kind(told)
     result = {
         "machine": machine.record(),
-        "bank": {**bank.header, "outcomes": dict(Counter(bank.outcomes.tolist()))},
+        "bank": old["bank"] if same else told,
         "film": {"length": Camera().length, "time_unit": TIME},
-        **kept,
+        **{name: value for name, value in old.items() if same and name in PARTS},
         part: found,
     }
     with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as file:
         json.dump(result, file, indent=1)
         file.write("\n")
     Path(file.name).replace(path)
+
+
+def _kind(told: dict[str, Any]) -> dict[str, Any]:
+    """Return what decides the runs of a bank, of what is told of it."""
+    return {name: value for name, value in told.items() if name not in ("digest", "outcomes")}
 
 
 if __name__ == "__main__":

@@ -43,6 +43,12 @@ def page(result: dict[str, Any]) -> str:
     ):
         if part in result:
             said += [*tables(result[part]["found"]), ""]
+            if result[part]["bank"] != bank["digest"]:
+                said += [
+                    "Measured with the same bank made anew on another processor, where last bits "
+                    f"differ (hash `{result[part]['bank']}`).",
+                    "",
+                ]
     if "microscope" in result:
         said += [
             "## What a microscope must deliver",

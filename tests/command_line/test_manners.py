@@ -134,8 +134,19 @@ def test_a_wait_for_the_compiler_is_told_once(capsys, monkeypatch):
 
 
 def test_what_is_compiled_beside_is_what_a_run_calls():
-    from cellcrawl.solvers.adaptive.ahead import LONGEST
+    from cellcrawl.solvers.adaptive import ahead
 
     cc.simulate(cc.Parameters(r_on=26, zeta_1=600), t_end=0.2)
-    for kernel, arguments in LONGEST.items():
-        assert arguments in kernel.signatures
+    assert ahead.FOLLOW in ahead.follow.signatures
+    assert ahead.FILL_FRAME in ahead.fill_frame.signatures
+    assert not ahead.nothing_kept()
+
+
+def test_a_run_waits_for_what_is_compiled_beside_and_does_without_it_if_it_dies(monkeypatch):
+    from cellcrawl.solvers.adaptive import ahead
+
+    for code in ("import time; time.sleep(0.5)", "raise SystemExit(1)"):
+        process = subprocess.Popen([sys.executable, "-c", code])
+        monkeypatch.setattr(ahead, "_beside", process)
+        assert cc.simulate(t_end=0.05).attrs["status"] == "completed"
+        assert process.poll() is not None

@@ -13,8 +13,8 @@ from typing import NamedTuple
 from cellcrawl.simulation.description import RunDescription
 from cellcrawl.sweeps import Grid
 from cellcrawl.sweeps.driver import Sweeping
-from cellcrawl.sweeps.executors import default_workers
 from cellcrawl.sweeps.worker import Outcome
+from cellcrawl.threads import usable_cores
 
 _SLEEP = 0.1  # seconds: what a run costs
 _DONE = {"status": "completed", "mode": "gliding", "confidence": 1.0}
@@ -87,7 +87,7 @@ def _throughput(quick: bool) -> Iterator[Figure]:
     seeds = [1] if quick else [1, 2, 3]
     axes = {"r_on": [16, 26, 36, 46, 56], "zeta_1": [440, 520, 600], "seed": seeds}
     counts = [1]
-    while 2 * counts[-1] <= default_workers():
+    while 2 * counts[-1] <= usable_cores():
         counts.append(2 * counts[-1])
     for workers in counts:
         with tempfile.TemporaryDirectory() as folder:

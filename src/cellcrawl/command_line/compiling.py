@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import atexit
 import functools
-import subprocess
-import sys
 import time
+from collections.abc import Callable
 from typing import Any
 
 from cellcrawl.command_line.main import complain
@@ -15,10 +13,10 @@ _PATIENCE = 1.0  # seconds of compiling before it is told
 
 
 @functools.cache
-def announce_compilation(beside: str | None = None) -> None:
+def announce_compilation(then: Callable[[], object] | None = None) -> None:
     """Say so on standard error if this command has to compile for longer than a moment.
 
-    Then a module ``beside`` is run in a process of its own, which compiles what comes last.
+    ``then`` is called at that moment.
     """
     from numba.core import event
 
@@ -38,8 +36,8 @@ def announce_compilation(beside: str | None = None) -> None:
             if not self.told and self.spent + now - self.began > _PATIENCE:
                 self.told = True
                 complain("compiling the solver for this machine: a minute, once")
-                if beside is not None:
-                    _start(beside)
+                if then is not None:
+                    then()
 
         def on_end(self, event: Any) -> None:
             self.depth -= 1
@@ -47,15 +45,3 @@ def announce_compilation(beside: str | None = None) -> None:
                 self.spent += time.monotonic() - self.began
 
     event.register("numba:compile", Announcement())  # type: ignore[no-untyped-call]
-
-
-def _start(module: str) -> None:
-    """Run a module in the background, no longer than this process lives."""
-    nothing = subprocess.DEVNULL
-    try:
-        process = subprocess.Popen(
-            [sys.executable, "-m", module], stdin=nothing, stdout=nothing, stderr=nothing
-        )
-    except OSError:
-        return  # this process compiles it then
-    atexit.register(process.kill)

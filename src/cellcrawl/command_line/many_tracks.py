@@ -42,9 +42,9 @@ def classify_all(
         Called with the number of tracks done since the last call.
     """
     chunks = (tracks[first : first + _CHUNK] for first in range(0, len(tracks), _CHUNK))
-    from cellcrawl.sweeps.executors import default_workers
+    from cellcrawl.threads import usable_cores
 
-    cores = default_workers()
+    cores = usable_cores()
     if len(tracks) < _FEW or cores == 1:
         for chunk in chunks:
             yield from _classify_chunk(chunk, cell_radius)

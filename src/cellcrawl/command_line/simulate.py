@@ -7,7 +7,6 @@ from typing import Any
 
 import click
 
-from cellcrawl.command_line.config import Configuration, read_configuration
 from cellcrawl.command_line.options import (
     make_folder,
     parameter_options,
@@ -15,7 +14,6 @@ from cellcrawl.command_line.options import (
     say,
     wants_progress,
 )
-from cellcrawl.command_line.report import exit_code, report_run
 from cellcrawl.errors import InputError
 from cellcrawl.parameters import Parameters
 
@@ -103,10 +101,16 @@ def simulate(
 
     Ctrl-C keeps what was computed; `cellcrawl resume` goes on from there.
     """
+    from cellcrawl.solvers.adaptive import AdaptiveSolver, ahead
+
+    if solver in (None, AdaptiveSolver.name) and ahead.nothing_kept():
+        ahead.start()  # before what takes seconds to import the first time
+
     import cellcrawl as cc
     from cellcrawl.command_line.compiling import announce_compilation
+    from cellcrawl.command_line.config import Configuration, read_configuration
+    from cellcrawl.command_line.report import exit_code, report_run
     from cellcrawl.simulation.description import DEFAULT_SOLVER
-    from cellcrawl.solvers.adaptive import AdaptiveSolver, ahead
 
     given = read_configuration(config) if config is not None else Configuration({}, {}, None, None)
     chosen = {name: value for name, value in parameters.items() if value is not None}
@@ -121,7 +125,7 @@ def simulate(
     }
     settings = {**given.run, **{name: value for name, value in flags.items() if value is not None}}
     adaptive = settings.get("solver", DEFAULT_SOLVER) == AdaptiveSolver.name
-    announce_compilation(ahead.__name__ if adaptive else None)
+    announce_compilation(ahead.start if adaptive else None)
     start = given.start
     if seed is not None:
         if start is not None and not isinstance(start, cc.RandomPerturbation):

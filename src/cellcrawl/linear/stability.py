@@ -5,10 +5,9 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from cellcrawl.arguments import checked
 from cellcrawl.errors import InputError
@@ -18,6 +17,9 @@ from cellcrawl.linear.modes import fastest_wavenumber, unstable_count
 from cellcrawl.linear.theory import growth_rates
 from cellcrawl.parameters import DESCRIPTIONS, Parameters
 from cellcrawl.validation import real_array, shown, whole_number
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _GRID = 200  # fewest steps of the grid on which the curves are found
 _HIGHEST = 1000
@@ -63,6 +65,8 @@ def stability_map(
     >>> ds.growth_rate.sel(k=1, r_on=25, zeta_1=600).item() > 12
     True
     """
+    import xarray as xr  # a second that no solver needs
+
     wavenumbers = _wavenumbers(k)
     (first, x), (second, y) = two_axes("a stability map", ranges).items()
     if x.size * y.size * len(wavenumbers) > _MOST:
@@ -130,7 +134,7 @@ def marginal_curves(parameters: Parameters, k: int, **ranges: Any) -> list[np.nd
 
 
 @checked
-def curves_in(stability: xr.Dataset, k: int) -> list[np.ndarray]:
+def curves_in(stability: Any, k: int) -> list[np.ndarray]:
     """Return the marginal curves of ``k`` that a stability map holds, as `marginal_curves` does."""
     first, second = axis_names(stability)
     mine = stability["marginal_k"].values == k
@@ -143,6 +147,8 @@ def curves_in(stability: xr.Dataset, k: int) -> list[np.ndarray]:
 
 def axis_names(stability: Any) -> tuple[str, str]:
     """Return the two parameters of a stability map, or raise `InputError` if it is none."""
+    import xarray as xr
+
     if not isinstance(stability, xr.Dataset) or "growth_rate" not in stability:
         raise InputError(
             f"this is no stability map but {shown(type(stability).__name__)}: make one with "

@@ -6,7 +6,6 @@ import contextlib
 import importlib.util
 import logging
 import multiprocessing
-import os
 import pickle
 import re
 import sys
@@ -18,6 +17,7 @@ from typing import Any
 from cellcrawl.errors import InputError, MissingExtraError
 from cellcrawl.sweeps.grid import Grid
 from cellcrawl.sweeps.pool import WorkerPool
+from cellcrawl.threads import usable_cores
 from cellcrawl.validation import shown
 
 _CONNECT = "10s"
@@ -50,7 +50,7 @@ def executor_for(given: Any, workers: int | None, grid: Grid) -> Iterator[Execut
         return
     if given is None:
         _see_that_workers_know(grid)
-        pool = WorkerPool(workers or default_workers(), with_main=_needs_main(grid))
+        pool = WorkerPool(workers or usable_cores(), with_main=_needs_main(grid))
         try:
             yield pool
         finally:
@@ -71,13 +71,6 @@ def executor_for(given: Any, workers: int | None, grid: Grid) -> Iterator[Execut
     yield given
 
 
-def default_workers() -> int:
-    """Return the number of cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
 def worker_count(executor: Executor) -> int:
     """Return how many calls an executor makes at the same time, as far as it says."""
     if isinstance(executor, InProcess):
@@ -87,7 +80,7 @@ def worker_count(executor: Executor) -> int:
     client = getattr(executor, "_client", None)
     if client is not None:
         return sum(client.nthreads().values()) or 1
-    return int(getattr(executor, "_max_workers", 0)) or default_workers()
+    return int(getattr(executor, "_max_workers", 0)) or usable_cores()
 
 
 def means_killed(error: BaseException) -> bool:

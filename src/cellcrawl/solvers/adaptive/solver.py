@@ -11,7 +11,7 @@ import numpy as np
 from cellcrawl.errors import InputError
 from cellcrawl.laws.addresses import without_code
 from cellcrawl.numerics.elementary import natural_logarithm
-from cellcrawl.solvers.adaptive import drive, resolution
+from cellcrawl.solvers.adaptive import ahead, drive, resolution
 from cellcrawl.solvers.adaptive import state as layout
 from cellcrawl.solvers.adaptive.differences import DIFFERENCES
 from cellcrawl.solvers.adaptive.follow import follow
@@ -293,7 +293,10 @@ class AdaptiveSolver(Solver):
 
     @functools.cached_property
     def _linked(self) -> Linked:
-        return linked(self._laws, self._around, self._placed)
+        found = linked(self._laws, self._around, self._placed)
+        if self._around is None:
+            ahead.wait()  # the kernels that take these are called next
+        return found
 
     def _restart(self) -> bool:
         """Begin anew under the parameters that hold now; False if they allow no root."""
