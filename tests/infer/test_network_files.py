@@ -20,7 +20,7 @@ def cell():
 def header(bank):
     """What a file says of itself whose network is of this bank and film."""
     taught = cc.infer.fit(cell(), bank, **UNIT).trained
-    return neural._header(taught, taught.view.part.shape[1], taught.view.summaries.shape[1])
+    return neural._header(taught)
 
 
 def written(path, header):

@@ -6,6 +6,7 @@ J. R. Stat. Soc. B 74, 419, 2012).
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ import numpy as np
 from cellcrawl.infer.regression import Network, train
 
 _EDGE: Final = 1e-3  # parts are kept off the ends of their range, where a logit has no value
-_SEEN_EDGE: Final = 3e-3
+SEEN_EDGE: Final = 3e-3  # as far as what networks expect is told apart
 _SHARE: Final = 0.03  # of the rows are near enough
 _FEWEST: Final = 150
 FOLDS: Final = 4
@@ -60,7 +61,7 @@ def local_linear(
     the ends of a range; a logit over a part is not, and gave intervals that were far too wide.
     """
     count = int(np.clip(share * len(seen), min(_FEWEST, len(seen)), len(seen)))
-    places, place = _logit(seen, _SEEN_EDGE), _logit(target, _SEEN_EDGE)
+    places, place = logit(seen, SEEN_EDGE), logit(target, SEEN_EDGE)
     spread = np.maximum(places.std(axis=0), 1e-9)
     away = np.sqrt((((places - place) / spread) ** 2).sum(axis=1))
     near = np.argpartition(away, count - 1)[:count]
@@ -69,9 +70,9 @@ def local_linear(
     weight = np.maximum(weight, 1e-6)
     weight /= weight.sum()
     x = np.column_stack([np.ones(count), (places[near] - place) / spread])
-    y = _logit(part[near])
+    y = logit(part[near])
     found = _weighted(x, y, weight)
-    return Samples(_expit(found[0] + y - x @ found), weight, near)
+    return Samples(expit(found[0] + y - x @ found), weight, near)
 
 
 class Reference(NamedTuple):
@@ -118,31 +119,49 @@ def posterior(
     The cell stands where the networks together expect it; what it is compared with are the rows of
     all of them, each expected by the one network that has not seen it.
     """
-    target = np.mean([one.network(summaries[None])[0] for one in references], axis=0)
+    target = thought(references, summaries[None])[0]
     part, seen, rows = (
         np.concatenate([getattr(one, name) for one in references])
         for name in ("part", "seen", "rows")
     )
     found = local_linear(part, seen, target)
-    logit = _logit(found.part)
-    middle = found.weight @ logit
-    return Samples(_expit(middle + width * (logit - middle)), found.weight, rows[found.row])
+    return widened(found._replace(row=rows[found.row]), width)
 
 
-def fair_width(references: list[Reference], summaries: np.ndarray, part: np.ndarray) -> np.ndarray:
-    """Return the factors under which intervals of cells set apart hold the truth as they say.
+def thought(references: list[Reference], summaries: np.ndarray) -> np.ndarray:
+    """Return the parameters that the networks together expect of films, shape (film, name)."""
+    return np.asarray(np.mean([one.network(summaries) for one in references], axis=0))
 
-    A network that saw three quarters of the runs is a little less sure than four together:
-    posteriors come out too wide by some percent.
+
+def widened(samples: Samples, width: np.ndarray | float) -> Samples:
+    """Return samples whose logits stand ``width`` times as far from their middle."""
+    place = logit(samples.part)
+    middle = samples.weight @ place
+    return samples._replace(part=expit(middle + width * (place - middle)))
+
+
+def fair_width(found: Iterable[Samples], part: np.ndarray) -> np.ndarray:
+    """Return the factors under which intervals hold the truth as often as they say, shape (name,).
+
+    Parameters
+    ----------
+    found : iterable of Samples
+        Posteriors of cells that nothing was trained on.
+    part : ndarray, shape (cell, name)
+        Their true parameters.
+
+    Notes
+    -----
+    A network that saw a part of the runs is a little less sure than several together: posteriors
+    come out too wide by some percent.
     """
     ranks = np.empty((len(_WIDTHS), *part.shape))
-    for row, (seen, truth) in enumerate(zip(summaries, part, strict=True)):
-        one = posterior(references, seen)
-        logit = _logit(one.part)
-        middle = one.weight @ logit
+    for row, (one, truth) in enumerate(zip(found, part, strict=True)):
+        place = logit(one.part)
+        middle = one.weight @ place
         # The truth is below a sample if it is so after both are drawn to the middle.
-        scaled = middle + (_logit(truth) - middle) / _WIDTHS[:, None]
-        ranks[:, row] = np.einsum("s,wsn->wn", one.weight, logit[None] < scaled[:, None])
+        scaled = middle + (logit(truth) - middle) / _WIDTHS[:, None]
+        ranks[:, row] = np.einsum("s,wsn->wn", one.weight, place[None] < scaled[:, None])
     ordered = np.sort(np.abs(2.0 * ranks - 1.0), axis=1)  # even on 0 to 1 if widths are right
     even = (np.arange(part.shape[0]) + 0.5) / part.shape[0]
     off = np.abs((ordered - even[:, None]).mean(axis=1))
@@ -155,10 +174,12 @@ def _weighted(x: np.ndarray, y: np.ndarray, weight: np.ndarray, ridge: float = 1
     return np.asarray(np.linalg.solve((x.T * weight) @ x + keep, (x.T * weight) @ y))
 
 
-def _logit(part: np.ndarray, edge: float = _EDGE) -> np.ndarray:
+def logit(part: np.ndarray, edge: float = _EDGE) -> np.ndarray:
+    """Return log(p / (1 - p)) of parts, kept ``edge`` off the ends of their range."""
     inner = np.clip(part, edge, 1.0 - edge)
     return np.asarray(np.log(inner / (1.0 - inner)))
 
 
-def _expit(value: np.ndarray) -> np.ndarray:
+def expit(value: np.ndarray) -> np.ndarray:
+    """Return the parts of which these are the logits."""
     return np.asarray(0.5 * (1.0 + np.tanh(0.5 * value)))

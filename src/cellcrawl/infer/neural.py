@@ -1,6 +1,10 @@
 """Neural posterior estimation by sbi, beside regression ABC: the two check each other.
 
-A network is kept as a NumPy archive: arrays by name, and what it was trained on as JSON. Nothing is
+Masked autoregressive flows (Papamakarios, Pavlakou & Murray, NIPS 2017) read the summaries, and
+what the networks of ABC expect of them, each of a film that it has not seen. How far these are to
+be trusted, how parameters hang together and how wide the posterior is, the flows learn themselves.
+
+Flows are kept as a NumPy archive: arrays by name, and what they were trained on as JSON. Nothing is
 unpickled.
 """
 
@@ -13,6 +17,7 @@ import json
 import warnings
 import zipfile
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
 
@@ -20,6 +25,7 @@ import numpy as np
 
 from cellcrawl.arguments import checked, file_path
 from cellcrawl.errors import InputError, MissingExtraError, StorageError
+from cellcrawl.infer import approximate
 from cellcrawl.infer.approximate import Samples
 from cellcrawl.infer.regression import Scaling
 from cellcrawl.infer.result import Fit
@@ -28,48 +34,61 @@ from cellcrawl.infer.trained import Trained
 from cellcrawl.validation import is_real
 
 _SAMPLES: Final = 2000
+_FLOWS: Final = 4  # trained apart, their samples together: one alone errs in its own way
 _HIDDEN: Final = 50
 _TRANSFORMS: Final = 5
+_READ: Final = (256, 128, 8)  # nodes of the layers that read the summaries
+_LEFT_OUT: Final = 0.1  # of their nodes, at each step
+_BLUR: Final = 0.05  # of each number, in spreads, at each step
+_RATE: Final = 1e-3
+_DECAY: Final = 0.1
+_HELD: Final = 10  # one run in so many says when a flow is best
+_LAYOUT: Final = 2  # of the file
 _KIND: Final = "cellcrawl network"
-_EPOCHS: Final = 200
-_EDGE: Final = 1e-3
+_EPOCHS: Final = 40
 _MOST_KEPT: Final = 4
 _ALIKE: Final = 0.02  # relative: microscopes that differ less are one
 _kept: dict[tuple[int, int], tuple[Any, Any]] = {}  # views with their networks, for the next cell
 
 
-class _Silent:
-    """What sbi tells of its training, kept nowhere: it would write to the folder one is in."""
-
-    log_dir = None
-
-    def log_metric(self, name: str, value: float, step: int | None = None) -> None: ...
-    def log_metrics(self, metrics: dict[str, float], step: int | None = None) -> None: ...
-    def log_params(self, params: dict[str, Any]) -> None: ...
-    def add_figure(self, name: str, figure: Any, step: int | None = None) -> None: ...
-    def flush(self) -> None: ...
-
-
 class Estimate:
-    """A trained network, that gives the posterior of a vector of summaries at once."""
+    """Trained flows, that give the posterior of a vector of summaries at once."""
 
-    def __init__(self, network: Any, scaling: Scaling, header: dict[str, Any]) -> None:
-        self._network, self._scaling, self.header = network, scaling, header
+    def __init__(
+        self,
+        taught: Trained,
+        flows: list[Any],
+        scaling: Scaling,
+        width: np.ndarray | float = 1.0,
+    ) -> None:
+        self._taught, self._flows, self._scaling, self.width = taught, flows, scaling, width
+        self.header = _header(taught)
 
     def posterior(self, summaries: np.ndarray, seed: int = 0) -> Samples:
         """Return samples of the posterior, equally weighted, as parts of the ranges."""
         torch = _torch()
-        x = torch.as_tensor(self._scaling(summaries[None]))
-        with torch.random.fork_rng(), torch.no_grad():
+        thought = self._taught.thought(summaries[None])
+        x = torch.as_tensor(_inputs(self._scaling, summaries[None], thought))
+        with torch.random.fork_rng(), torch.no_grad(), _one_thread(torch):
             torch.manual_seed(seed)
-            drawn = self._network.sample((_SAMPLES,), condition=x).reshape(_SAMPLES, -1).numpy()
-        part = 0.5 * (1.0 + np.tanh(0.5 * drawn.astype(float)))
-        return Samples(part, np.full(_SAMPLES, 1.0 / _SAMPLES), np.zeros(_SAMPLES, int))
+            drawn = [
+                flow.sample((_SAMPLES // len(self._flows),), condition=x)[:, 0].numpy()
+                for flow in self._flows
+            ]
+        part = approximate.expit(np.concatenate(drawn).astype(float))
+        equal = np.full(len(part), 1.0 / len(part))
+        samples = Samples(part, equal, np.zeros(len(part), int))
+        return approximate.widened(samples, self.width)
 
     def save(self, path: Path) -> None:
         """Write weights and what they belong to, all or nothing."""
-        arrays = {f"w:{n}": v.numpy() for n, v in self._network.state_dict().items()}
+        arrays = {
+            f"w:{number}:{name}": value.numpy()
+            for number, flow in enumerate(self._flows)
+            for name, value in flow.state_dict().items()
+        }
         arrays |= {"middle": self._scaling.middle, "spread": self._scaling.spread}
+        arrays["width"] = np.asarray(self.width)
         text = json.dumps(self.header).encode()
         stream = io.BytesIO()
         np.savez(stream, header=np.frombuffer(text, np.uint8), **arrays)
@@ -83,7 +102,7 @@ class Estimate:
 
 
 def train_estimate(taught: Trained, seed: int = 0) -> Estimate:
-    """Train a network on all looks but those set apart.
+    """Train flows on all looks but those set apart, and hold their width to these.
 
     Raises
     ------
@@ -91,33 +110,93 @@ def train_estimate(taught: Trained, seed: int = 0) -> Estimate:
         Without sbi.
     """
     torch = _torch()
-    view = taught.view
-    rows = np.setdiff1d(
-        np.arange(len(view.run)), np.flatnonzero(np.isin(view.run, view.run[taught.aside]))
+    view, scaling = taught.view, taught.alarm.scaling
+    rows, thought = (
+        np.concatenate([getattr(one, name) for one in taught.references])
+        for name in ("rows", "seen")
     )
-    scaling = taught.alarm.scaling
-    inner = np.clip(view.part[rows], _EDGE, 1.0 - _EDGE)
-    theta = torch.as_tensor(np.log(inner / (1.0 - inner)).astype(np.float32))
-    x = torch.as_tensor(scaling(view.summaries[rows]))
-    from sbi.inference import NPE
+    theta = approximate.logit(view.part[rows]).astype(np.float32)
+    x = _inputs(scaling, view.summaries[rows], thought)
+    order = np.random.default_rng(seed).permutation(np.unique(view.run[rows]))
+    flows = []
+    with torch.random.fork_rng(), warnings.catch_warnings(), _one_thread(torch):
+        warnings.simplefilter("ignore")
+        for number in range(_FLOWS):
+            torch.manual_seed(seed + number)
+            held = np.isin(view.run[rows], order[number::_HELD])
+            flows.append(_trained_flow(torch, theta, x, held))
+    plain = Estimate(taught, flows, scaling)
+    tried = (plain.posterior(summaries) for summaries in view.summaries[taught.aside])
+    return Estimate(taught, flows, scaling, approximate.fair_width(tried, view.part[taught.aside]))
+
+
+def _inputs(scaling: Scaling, summaries: np.ndarray, thought: np.ndarray) -> np.ndarray:
+    """Return what flows read of films, shape (film, summary and name)."""
+    expected = approximate.logit(thought, approximate.SEEN_EDGE)
+    return np.column_stack([scaling(summaries), expected]).astype(np.float32)
+
+
+def _trained_flow(torch: Any, theta: np.ndarray, x: np.ndarray, held: np.ndarray) -> Any:
+    """Return a flow as it was when it told most of the runs that are held back."""
+    parameters, inputs = torch.as_tensor(theta[~held]), torch.as_tensor(x[~held])
+    parameters_held, inputs_held = torch.as_tensor(theta[held]), torch.as_tensor(x[held])
+    flow = _new_flow(torch, parameters, inputs)
+    weights = list(flow.parameters())
+    batch = min(256, max(len(inputs) // 8, 16))
+    steps = max(len(inputs) // batch, 1)
+    descent = torch.optim.AdamW(weights, lr=_RATE, weight_decay=_DECAY)
+    rate = torch.optim.lr_scheduler.OneCycleLR(
+        descent, _RATE, total_steps=_EPOCHS * steps, pct_start=0.05
+    )
+    best, least = None, np.inf
+    for _ in range(_EPOCHS):
+        flow.train()
+        order = torch.randperm(len(inputs))
+        for step in range(steps):
+            rows = order[step * batch : (step + 1) * batch]
+            blurred = inputs[rows] + _BLUR * torch.randn_like(inputs[rows])
+            descent.zero_grad()
+            flow.loss(parameters[rows], condition=blurred).mean().backward()
+            torch.nn.utils.clip_grad_norm_(weights, 5.0)
+            descent.step()
+            rate.step()
+        flow.eval()
+        with torch.no_grad():
+            loss = float(flow.loss(parameters_held, condition=inputs_held).mean())
+        if best is None or loss < least:
+            best, least = {n: v.clone() for n, v in flow.state_dict().items()}, loss
+    flow.load_state_dict(best)
+    return flow.eval()
+
+
+def _new_flow(torch: Any, theta: Any, x: Any) -> Any:
+    """Return a flow of these shapes, not yet trained."""
     from sbi.neural_nets import posterior_nn
 
-    silent = contextlib.redirect_stdout(io.StringIO())
-    with torch.random.fork_rng(), warnings.catch_warnings(), _one_thread(torch), silent:
-        warnings.simplefilter("ignore")
-        torch.manual_seed(seed)
-        trainer = NPE(
-            density_estimator=posterior_nn(
-                "maf", hidden_features=_HIDDEN, num_transforms=_TRANSFORMS
-            ),
-            show_progress_bars=False,
-            tracker=_Silent(),
-        )
-        network = trainer.append_simulations(theta, x).train(
-            training_batch_size=min(256, max(len(rows) // 8, 16)), max_num_epochs=_EPOCHS
-        )
-    network.eval()
-    return Estimate(network, scaling, _header(taught, theta.shape[1], x.shape[1]))
+    unknowns = theta.shape[1]
+
+    class Reader(torch.nn.Module):  # type: ignore[misc]
+        """What ABC expects, as it is, and a few numbers read off everything."""
+
+        def __init__(self) -> None:
+            super().__init__()
+            layers = []
+            for below, above in pairwise((x.shape[1], *_READ)):
+                layers += [torch.nn.Linear(below, above), torch.nn.Tanh()]
+                layers.append(torch.nn.Dropout(_LEFT_OUT))
+            self.layers = torch.nn.Sequential(*layers[:-2])
+
+        def forward(self, given: Any) -> Any:
+            return torch.cat([given[:, -unknowns:], self.layers(given)], dim=1)
+
+    build = posterior_nn(
+        "maf",
+        hidden_features=_HIDDEN,
+        num_transforms=_TRANSFORMS,
+        z_score_x="none",
+        embedding_net=Reader(),
+    )
+    return build(theta, x)
 
 
 def estimate_of(taught: Trained, seed: int = 0, path: Path | None = None) -> Estimate:
@@ -152,25 +231,27 @@ def load_estimate(path: Path, taught: Trained) -> Estimate:
     StorageError
         If the file is no network, or damaged.
     """
-    wanted = _header(taught, taught.view.part.shape[1], taught.view.summaries.shape[1])
-    header, arrays = _read(path, wanted)  # a file that is refused is so without sbi
+    wanted = _header(taught)
+    _, arrays = _read(path, wanted)  # a file that is refused is so without sbi
     torch = _torch()
-    from sbi.neural_nets import posterior_nn
-
+    unknowns = len(taught.view.names)
     random = torch.Generator().manual_seed(0)
-    theta = torch.randn((64, wanted["unknowns"]), generator=random)
-    x = torch.randn((64, wanted["summaries"]), generator=random)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        network = posterior_nn("maf", hidden_features=_HIDDEN, num_transforms=_TRANSFORMS)(theta, x)
-    weights = {n[2:]: torch.as_tensor(v) for n, v in arrays.items() if n.startswith("w:")}
+    theta = torch.randn((64, unknowns), generator=random)
+    x = torch.randn((64, taught.view.summaries.shape[1] + unknowns), generator=random)
+    flows = []
     try:
-        network.load_state_dict(weights)
+        for number in range(_FLOWS):
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                flow = _new_flow(torch, theta, x)
+            start = f"w:{number}:"
+            weights = {n: torch.as_tensor(v) for n, v in arrays.items() if n.startswith(start)}
+            flow.load_state_dict({n.removeprefix(start): v for n, v in weights.items()})
+            flows.append(flow.eval())
         scaling = Scaling(arrays["middle"], arrays["spread"])
+        return Estimate(taught, flows, scaling, arrays["width"])
     except (RuntimeError, KeyError):
         raise StorageError(f"{path} is damaged: its weights do not fit; train it anew") from None
-    network.eval()
-    return Estimate(network, scaling, header)
 
 
 def _read(path: Path, wanted: dict[str, Any]) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
@@ -238,15 +319,15 @@ def save_network(fit: Fit, path: str | Path) -> Path:
     return target
 
 
-def _header(taught: Trained, unknowns: int, summaries: int) -> dict[str, Any]:
+def _header(taught: Trained) -> dict[str, Any]:
     return {
         "kind": _KIND,
+        "layout": _LAYOUT,
         "version": VERSION,
         "bank": taught.bank.digest,
         "microscope": taught.microscope.in_usual_units(),
         "unknown": list(taught.view.names),
-        "unknowns": int(unknowns),
-        "summaries": int(summaries),
+        "summaries": int(taught.view.summaries.shape[1]),
     }
 
 

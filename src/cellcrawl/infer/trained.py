@@ -105,7 +105,7 @@ class Trained(NamedTuple):
 
     def thought(self, summaries: np.ndarray) -> np.ndarray:
         """Return the parameters that films are thought to have, shape (film, name)."""
-        return np.asarray(np.mean([one.network(summaries) for one in self.references], axis=0))
+        return approximate.thought(self.references, summaries)
 
 
 @on_one_thread
@@ -133,7 +133,8 @@ def train(bank: Bank, microscope: Microscope, looks: int = 3, seed: int = 0) -> 
     found = approximate.learn(part, summaries, view.run[rows], seed)
     references = [one._replace(rows=rows[one.rows]) for one in found]
     alarm = _alarm(view, rows, aside, references)
-    width = approximate.fair_width(references, view.summaries[aside], view.part[aside])
+    tried = (approximate.posterior(references, seen) for seen in view.summaries[aside])
+    width = approximate.fair_width(tried, view.part[aside])
     calibration = calibrate(references, view, aside, width)
     return Trained(bank, microscope, view, references, calibration, alarm, aside, width)
 
@@ -176,7 +177,7 @@ def _alarm(view: View, rows: np.ndarray, aside: np.ndarray, references: list[Ref
     values, axes = np.linalg.eigh(np.cov((left / spread).T))
     size = np.maximum(values, 0.02)
     alarm = Alarm(scaling, foretell, axes, size, spread, np.inf)
-    among = np.mean([one.network(view.summaries[aside]) for one in references], axis=0)
+    among = approximate.thought(references, view.summaries[aside])
     tried = np.sort(alarm.strangeness(among, view.summaries[aside]))
     place = min(int(np.ceil((len(tried) + 1) * (1.0 - FALSE_ALARMS))), len(tried)) - 1
     return alarm._replace(threshold=float(tried[place]))
