@@ -2,9 +2,9 @@
 
 ``python benchmarks/infer.py BANK [PART ...]`` adds the parts named, or all, to
 ``benchmarks/results/infer.json``: ``cameras``, ``alarms``, ``drug``, ``methods`` (needs sbi),
-``choice`` (with ``--other BANK``, of another law), ``microscope`` (how well each parameter is told
-by frame, pixel and length). Fresh cells are new runs of the bank's prior; pixels are those of
-`cellcrawl.observe`.
+``again`` (ABC trained twice), ``choice`` (with ``--other BANK``, of another law), ``microscope``
+(how well each parameter is told by frame, pixel and length). Fresh cells are new runs of the
+bank's prior; pixels are those of `cellcrawl.observe`.
 """
 
 from __future__ import annotations

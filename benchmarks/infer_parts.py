@@ -65,10 +65,12 @@ class Measuring:
         return np.array([one.strangeness for one in fits]), fits
 
 
-def taught_for(bank: Any, cells: list[Cell], camera: Camera, looks: int = 3) -> Trained:
+def taught_for(
+    bank: Any, cells: list[Cell], camera: Camera, looks: int = 3, seed: int = 0
+) -> Trained:
     """Return what a bank teaches of such cells."""
     _, microscope = fitting.microscope_of(cells, bank, TIME, 1.0, camera.pixel, camera.error)
-    return train(bank, microscope, looks)
+    return train(bank, microscope, looks, seed)
 
 
 def calibration(taught: Trained, cells: list[Fresh], found: list[Any]) -> Calibration:
@@ -209,6 +211,23 @@ def methods(at: Measuring) -> dict[str, Any]:
     return result
 
 
+def again(at: Measuring) -> dict[str, Any]:
+    """How often the means of two trainings of ABC are within a standard deviation."""
+    name = next(iter(CAMERAS))
+    camera = CAMERAS[name]
+    cells = filmed(at.cells, camera)
+    first = at.found(at.taught(camera), cells)[1]
+    second = at.found(taught_for(at.bank, cells[:1], camera, seed=1), cells)[1]
+    apart = np.array(
+        [
+            np.abs(a.mean - b.mean) / np.minimum(a.spread, b.spread)
+            for a, b in zip(first, second, strict=True)
+        ]
+    )
+    told = np.round((apart <= 1.0).mean(axis=0), 4).tolist()
+    return {name: dict(zip(first[0].names, told, strict=True))}
+
+
 def choice(at: Measuring) -> dict[str, Any]:
     """How often the law of a cell is taken for another, by banks of both."""
     result = {}
@@ -251,6 +270,7 @@ PARTS = {
     "alarms": alarms,
     "drug": drug,
     "methods": methods,
+    "again": again,
     "choice": choice,
     "microscope": microscope,
 }

@@ -37,6 +37,7 @@ def page(result: dict[str, Any]) -> str:
     for part, tables in (
         ("cameras", _cameras),
         ("methods", _methods),
+        ("again", _again),
         ("alarms", _alarms),
         ("choice", _choice),
         ("drug", _drug),
@@ -116,9 +117,14 @@ def _methods(found: dict[str, Any]) -> list[str]:
         values = [*(one["within one standard deviation"][n] for n in NAMES), one["all of them"]]
         said.append(_row(name, [_bold(f"{v:.0%}", v < 0.9) for v in values]))
     said += ["", *_head("NPE: R²")]
-    said += [_recovered(name, one["fresh"], None) for name, one in found.items()]
+    said += [_recovered(name, one["fresh"], ASKED.get(name)) for name, one in found.items()]
     said += ["", *_head("NPE: 90 % intervals that hold the truth")]
     return said + [_held(name, one["fresh"]) for name, one in found.items()]
+
+
+def _again(found: dict[str, Any]) -> list[str]:
+    said = _head("ABC trained twice, within one standard deviation")
+    return said + [_row(n, [f"{one[m]:.0%}" for m in NAMES]) for n, one in found.items()]
 
 
 def _alarms(found: dict[str, Any]) -> list[str]:
