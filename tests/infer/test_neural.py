@@ -42,8 +42,17 @@ def test_a_network_that_was_kept_gives_the_same_posterior(kept, bank, monkeypatc
     monkeypatch.setattr(neural, "train_estimate", None)  # none is trained
     again = cc.infer.fit(cell(), bank, method="npe", network=path, **UNIT)
     assert again.samples.part == pytest.approx(fit.samples.part, abs=1e-6)
+    assert again.calibration.rank == pytest.approx(fit.calibration.rank)
     other = cc.infer.fit(cell(6), bank, method="npe", network=path, **UNIT)
     assert other.estimate.header == fit.estimate.header
+
+
+def test_intervals_of_runs_set_apart_hold_the_truth_as_they_say(kept):
+    fit, _ = kept
+    cells = len(fit.calibration.rank)
+    unsure = 3.0 * (0.9 * 0.1 / cells) ** 0.5
+    assert fit.calibration.coverage(0.9) == pytest.approx(np.full(len(fit.names), 0.9), abs=unsure)
+    assert fit.calibration is not fit.trained.calibration
 
 
 def test_a_network_is_kept_once(kept, tmp_path):

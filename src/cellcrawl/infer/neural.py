@@ -30,7 +30,7 @@ from cellcrawl.infer.approximate import Samples
 from cellcrawl.infer.regression import Scaling
 from cellcrawl.infer.result import Fit
 from cellcrawl.infer.summaries import VERSION
-from cellcrawl.infer.trained import Trained
+from cellcrawl.infer.trained import Calibration, Trained, calibrated
 from cellcrawl.validation import is_real
 
 _SAMPLES: Final = 2000
@@ -52,16 +52,23 @@ _kept: dict[tuple[int, int], tuple[Any, Any]] = {}  # views with their networks,
 
 
 class Estimate:
-    """Trained flows, that give the posterior of a vector of summaries at once."""
+    """Trained flows, that give the posterior of a vector of summaries at once.
 
-    def __init__(
-        self,
-        taught: Trained,
-        flows: list[Any],
-        scaling: Scaling,
-        width: np.ndarray | float = 1.0,
-    ) -> None:
-        self._taught, self._flows, self._scaling, self.width = taught, flows, scaling, width
+    Attributes
+    ----------
+    header : dict
+        What they belong to.
+    width : ndarray, shape (name,)
+        Factors of the spread of each parameter, as in `Trained`.
+    calibration : Calibration
+        How posteriors of cells of the bank set apart stand to the truth.
+    """
+
+    width: np.ndarray | float = 1.0
+    calibration: Calibration
+
+    def __init__(self, taught: Trained, flows: list[Any], scaling: Scaling) -> None:
+        self._taught, self._flows, self._scaling = taught, flows, scaling
         self.header = _header(taught)
 
     def posterior(self, summaries: np.ndarray, seed: int = 0) -> Samples:
@@ -88,7 +95,8 @@ class Estimate:
             for name, value in flow.state_dict().items()
         }
         arrays |= {"middle": self._scaling.middle, "spread": self._scaling.spread}
-        arrays["width"] = np.asarray(self.width)
+        arrays |= {"width": np.asarray(self.width)}
+        arrays |= {"mean": self.calibration.mean, "rank": self.calibration.rank}
         text = json.dumps(self.header).encode()
         stream = io.BytesIO()
         np.savez(stream, header=np.frombuffer(text, np.uint8), **arrays)
@@ -125,9 +133,10 @@ def train_estimate(taught: Trained, seed: int = 0) -> Estimate:
             torch.manual_seed(seed + number)
             held = np.isin(view.run[rows], order[number::_HELD])
             flows.append(_trained_flow(torch, theta, x, held))
-    plain = Estimate(taught, flows, scaling)
-    tried = (plain.posterior(summaries) for summaries in view.summaries[taught.aside])
-    return Estimate(taught, flows, scaling, approximate.fair_width(tried, view.part[taught.aside]))
+    made = Estimate(taught, flows, scaling)
+    tried = [made.posterior(summaries) for summaries in view.summaries[taught.aside]]
+    made.width, made.calibration = calibrated(view, taught.aside, tried)
+    return made
 
 
 def _inputs(scaling: Scaling, summaries: np.ndarray, thought: np.ndarray) -> np.ndarray:
@@ -248,9 +257,13 @@ def load_estimate(path: Path, taught: Trained) -> Estimate:
             weights = {n: torch.as_tensor(v) for n, v in arrays.items() if n.startswith(start)}
             flow.load_state_dict({n.removeprefix(start): v for n, v in weights.items()})
             flows.append(flow.eval())
-        scaling = Scaling(arrays["middle"], arrays["spread"])
-        return Estimate(taught, flows, scaling, arrays["width"])
-    except (RuntimeError, KeyError):
+        kept = Estimate(taught, flows, Scaling(arrays["middle"], arrays["spread"]))
+        kept.width = arrays["width"].reshape(unknowns)
+        truth = taught.view.part[taught.aside]
+        mean, rank = (arrays[name].reshape(truth.shape) for name in ("mean", "rank"))
+        kept.calibration = Calibration(taught.view.names, truth, mean, rank)
+        return kept
+    except (RuntimeError, KeyError, ValueError):
         raise StorageError(f"{path} is damaged: its weights do not fit; train it anew") from None
 
 

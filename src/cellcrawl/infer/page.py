@@ -229,7 +229,7 @@ def _of_group(group: Group) -> str:
 
 
 def _of_method(fit: Fit, command: str) -> str:
-    calibration = fit.trained.calibration
+    calibration = fit.calibration
     cells = len(calibration.rank)
     outcomes = ", ".join(f"{n} {c}" for n, c in fit.trained.view.outcomes.items() if c)
     made = f"<h2>This page again</h2><pre>{_text(command)}</pre>" if command else ""

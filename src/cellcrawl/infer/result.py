@@ -11,7 +11,7 @@ from cellcrawl.arguments import checked
 from cellcrawl.infer.approximate import Samples
 from cellcrawl.infer.cells import Cell
 from cellcrawl.infer.prior import LENGTH_UNIT, meaning_of, unit_of
-from cellcrawl.infer.trained import Trained
+from cellcrawl.infer.trained import Calibration, Trained
 from cellcrawl.parameters import DESCRIPTIONS, Parameters
 from cellcrawl.sweeps.identity import code_version
 from cellcrawl.validation import one_of, real_number
@@ -98,6 +98,12 @@ class Fit:
     def values(self) -> np.ndarray:
         """Samples of the posterior, shape (sample, name), in the units of the parameters."""
         return self._in_units(self.samples.part)
+
+    @property
+    def calibration(self) -> Calibration:
+        """How posteriors of the method stand to the truth, of cells of the bank set apart."""
+        known: Calibration = self.trained.calibration
+        return known if self.estimate is None else self.estimate.calibration
 
     def _in_units(self, part: np.ndarray) -> np.ndarray:
         ranges = self.trained.view.ranges
@@ -257,7 +263,7 @@ class Fit:
                 f"the bank was made by cellcrawl {self.trained.bank.header['code']}, another "
                 "version than this"
             )
-        shortest = self.trained.calibration.coverage(0.9)
+        shortest = self.calibration.coverage(0.9)
         for name, held in zip(self.names, shortest, strict=True):
             if not 0.84 <= held <= 0.96:
                 said.append(

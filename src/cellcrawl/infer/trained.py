@@ -9,7 +9,7 @@ import numpy as np
 
 from cellcrawl.errors import InputError
 from cellcrawl.infer import approximate
-from cellcrawl.infer.approximate import Reference
+from cellcrawl.infer.approximate import Reference, Samples
 from cellcrawl.infer.bank import Bank
 from cellcrawl.infer.microscope import Microscope, View, look
 from cellcrawl.infer.regression import Scaling
@@ -133,9 +133,9 @@ def train(bank: Bank, microscope: Microscope, looks: int = 3, seed: int = 0) -> 
     found = approximate.learn(part, summaries, view.run[rows], seed)
     references = [one._replace(rows=rows[one.rows]) for one in found]
     alarm = _alarm(view, rows, aside, references)
-    tried = (approximate.posterior(references, seen) for seen in view.summaries[aside])
-    width = approximate.fair_width(tried, view.part[aside])
-    calibration = calibrate(references, view, aside, width)
+    width, calibration = calibrated(
+        view, aside, [approximate.posterior(references, seen) for seen in view.summaries[aside]]
+    )
     return Trained(bank, microscope, view, references, calibration, alarm, aside, width)
 
 
@@ -149,16 +149,16 @@ def trained(bank: Bank, microscope: Microscope, looks: int = 3, seed: int = 0) -
     return _kept(str(bank.path), bank.digest, microscope, looks, seed)
 
 
-def calibrate(
-    references: list[Reference], view: View, rows: np.ndarray, width: np.ndarray
-) -> Calibration:
-    """Return how posteriors of these rows stand to the truth."""
-    mean, rank = [], []
-    for row in rows:
-        found = approximate.posterior(references, view.summaries[row], width)
-        mean.append(found.weight @ found.part)
-        rank.append(found.weight @ (found.part < view.part[row]))
-    return Calibration(view.names, view.part[rows], np.array(mean), np.array(rank))
+def calibrated(
+    view: View, rows: np.ndarray, found: list[Samples]
+) -> tuple[np.ndarray, Calibration]:
+    """Return the fair width of posteriors of these rows, and how they stand to the truth then."""
+    truth = view.part[rows]
+    width = approximate.fair_width(found, truth)
+    fair = [approximate.widened(one, width) for one in found]
+    mean = np.array([one.weight @ one.part for one in fair])
+    rank = np.array([one.weight @ (one.part < true) for one, true in zip(fair, truth, strict=True)])
+    return width, Calibration(view.names, truth, mean, rank)
 
 
 def _alarm(view: View, rows: np.ndarray, aside: np.ndarray, references: list[Reference]) -> Alarm:
