@@ -47,8 +47,8 @@ def page(result: dict[str, Any]) -> str:
             said += [*tables(result[part]["found"]), ""]
             if result[part]["bank"] != bank["digest"]:
                 said += [
-                    "Measured with the same bank made anew on another processor, where last bits "
-                    f"differ (hash `{result[part]['bank']}`).",
+                    "Measured with the same bank made anew, which differs in last bits (hash "
+                    f"`{result[part]['bank']}`).",
                     "",
                 ]
     if "microscope" in result:

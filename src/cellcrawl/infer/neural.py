@@ -94,9 +94,13 @@ class Estimate:
             for number, flow in enumerate(self._flows)
             for name, value in flow.state_dict().items()
         }
-        arrays |= {"middle": self._scaling.middle, "spread": self._scaling.spread}
-        arrays |= {"width": np.asarray(self.width)}
-        arrays |= {"mean": self.calibration.mean, "rank": self.calibration.rank}
+        arrays |= {
+            "middle": self._scaling.middle,
+            "spread": self._scaling.spread,
+            "width": np.asarray(self.width),
+            "mean": self.calibration.mean,
+            "rank": self.calibration.rank,
+        }
         text = json.dumps(self.header).encode()
         stream = io.BytesIO()
         np.savez(stream, header=np.frombuffer(text, np.uint8), **arrays)
@@ -241,7 +245,7 @@ def load_estimate(path: Path, taught: Trained) -> Estimate:
         If the file is no network, or damaged.
     """
     wanted = _header(taught)
-    _, arrays = _read(path, wanted)  # a file that is refused is so without sbi
+    arrays = _read(path, wanted)  # a file that is refused is so without sbi
     torch = _torch()
     unknowns = len(taught.view.names)
     random = torch.Generator().manual_seed(0)
@@ -267,8 +271,8 @@ def load_estimate(path: Path, taught: Trained) -> Estimate:
         raise StorageError(f"{path} is damaged: its weights do not fit; train it anew") from None
 
 
-def _read(path: Path, wanted: dict[str, Any]) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    """Return what a file of a network says of itself, if it says what is wanted, and its arrays."""
+def _read(path: Path, wanted: dict[str, Any]) -> dict[str, np.ndarray]:
+    """Return the arrays of a file of networks, if it says of itself what is wanted."""
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             header = json.loads(bytes(file["header"]))
@@ -287,7 +291,7 @@ def _read(path: Path, wanted: dict[str, Any]) -> tuple[dict[str, Any], dict[str,
                 f"{path} is a network of another {name}: give another file, where one is trained "
                 "and kept; it is not overwritten"
             )
-    return header, arrays
+    return arrays
 
 
 def _same(given: Any, wanted: Any) -> bool:
